@@ -1,0 +1,59 @@
+/* An animation: a description read and checked. Immutable; any number of threads may read it. */
+#ifndef ZOETROPE_ANIMATION_H
+#define ZOETROPE_ANIMATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/image.h>
+#include <zoetrope/rate.h>
+#include <zoetrope/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct zt_animation zt_animation;
+
+/* What the description says of the film as a whole. Frames are numbered 0 .. frame_count - 1. */
+typedef struct zt_film {
+    int width, height;   /* pixels */
+    zt_rate rate;
+    int64_t frame_count; /* at least 1 */
+    zt_view view;
+    int samples;         /* a pixel, at least 1 */
+} zt_film;
+
+/* How much there is, for a summary. */
+typedef struct zt_contents {
+    int plane_count, sphere_count, triangle_count, mesh_count, group_count;
+    int64_t mesh_triangle_count; /* over all mesh objects, each use counted */
+    int ambient_light_count, point_light_count;
+    int material_count;
+    int track_count; /* properties that are keyed */
+} zt_contents;
+
+/* Reads the description at `path` with all that it refers to. All mistakes are told before giving
+ * up. ZT_EDESCRIPTION for mistakes, ZT_EFILE when the file itself cannot be read. The caller frees
+ * the animation. */
+zt_status zt_animation_read(zt_animation **animation, const char *path, zt_listener listener);
+void zt_animation_free(zt_animation **animation);
+
+const zt_film *zt_animation_film(const zt_animation *animation);
+zt_contents zt_animation_contents(const zt_animation *animation);
+
+/* One thing that moves, in words. */
+typedef struct zt_movement {
+    const char *name;          /* "ball.center", "camera.fov"; owned by the animation */
+    const char *curve;         /* "smooth" */
+    int key_count;
+    double first_s, last_s;    /* times of its first and last key, seconds */
+} zt_movement;
+
+/* `index` from 0 to track_count - 1, in the order of the description. */
+zt_movement zt_animation_movement(const zt_animation *animation, int index);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

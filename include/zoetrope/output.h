@@ -1,0 +1,49 @@
+/* Where images go: numbered stills, a movie, checksums. */
+#ifndef ZOETROPE_OUTPUT_H
+#define ZOETROPE_OUTPUT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/image.h>
+#include <zoetrope/rate.h>
+#include <zoetrope/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct zt_output zt_output;
+
+/* What an output is told before the first image. */
+typedef struct zt_output_format {
+    int width, height;
+    zt_rate rate;
+    zt_view view;
+} zt_output_format;
+
+/* Opens an output, chosen by the name of `target`:
+ *   film.mp4                          a movie, H.264
+ *   frames.####.png, frames.%04d.exr  numbered images (also .tif .jpg); one # for each digit, and
+ *                                     more digits where the number needs them
+ *   image.png                         one image; a second one is refused
+ *   film.hash                         a line for each frame: its number, its size, and the XXH3
+ *                                     128-bit checksum of its float pixels
+ * All that can be refused is refused here, before the first image is made: unknown names, odd
+ * sizes for a movie, a directory that cannot be written. Missing directories are made.
+ * Nothing appears under its final name before it is complete. */
+zt_status zt_output_open(zt_output **output, const char *target, const zt_output_format *format,
+                         zt_listener listener);
+
+/* Writes the image of `frame`; frames come in rising order. The image stays the caller's. */
+zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t frame);
+
+/* Completes the files, gives them their names, and frees the output. What was written so far is
+ * kept, so an interrupted film plays; when an earlier write failed or nothing was written, the
+ * unfinished file is removed instead. */
+zt_status zt_output_close(zt_output **output);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,51 @@
+/* Many frames: an animation becomes images, in order, and goes to an output. */
+#ifndef ZOETROPE_RENDERER_H
+#define ZOETROPE_RENDERER_H
+
+#include <zoetrope/animation.h>
+#include <zoetrope/image.h>
+#include <zoetrope/output.h>
+#include <zoetrope/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct zt_renderer zt_renderer;
+
+/* Zero means: as the description says, or as the machine offers (threads). */
+typedef struct zt_render_settings {
+    int width, height; /* pixels; both or neither */
+    int samples;       /* a pixel */
+    int threads;       /* one a core by default; the images do not depend on it */
+} zt_render_settings;
+
+/* Is told after each frame of a sequence, and asked often, from any thread, whether to stop. */
+typedef struct zt_watcher {
+    void (*progress)(void *user, int64_t done_count, int64_t total_count, int64_t frame);
+    bool (*stopped)(void *user);
+    void *user;
+} zt_watcher;
+
+/* `animation` must outlive the renderer. The caller closes it. */
+zt_status zt_renderer_open(zt_renderer **renderer, const zt_animation *animation,
+                           const zt_render_settings *settings, zt_listener listener);
+void zt_renderer_close(zt_renderer **renderer);
+
+/* What an output for this renderer's images has to be told. */
+zt_output_format zt_renderer_format(const zt_renderer *renderer);
+
+/* Renders one frame into an image of the renderer's size. Frames outside of the film's range are
+ * legal: their curves hold. ZT_ESTOPPED when the watcher (may be NULL) said so. */
+zt_status zt_renderer_frame(zt_renderer *renderer, int64_t frame, zt_image *image,
+                            const zt_watcher *watcher);
+
+/* Renders frames first .. last, both included, to an output, writing behind the rendering. When it
+ * is stopped or fails, the frames written before are complete, and the output can be closed. */
+zt_status zt_renderer_sequence(zt_renderer *renderer, int64_t first, int64_t last,
+                               zt_output *output, const zt_watcher *watcher);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

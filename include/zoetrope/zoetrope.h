@@ -1,0 +1,17 @@
+/* Zoetrope: a description of an animation becomes a film.
+ *
+ *   zt_animation_read -> zt_renderer_open -> zt_output_open -> zt_renderer_sequence -> close all
+ */
+#ifndef ZOETROPE_H
+#define ZOETROPE_H
+
+#include <zoetrope/animation.h>
+#include <zoetrope/image.h>
+#include <zoetrope/output.h>
+#include <zoetrope/rate.h>
+#include <zoetrope/renderer.h>
+#include <zoetrope/status.h>
+
+#define ZT_VERSION "0.1.0"
+
+#endif

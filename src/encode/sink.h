@@ -1,0 +1,24 @@
+/* An output is a small table of calls. Each kind of output gives one; output.c asks them in turn
+ * whether they accept a target. */
+#ifndef ZT_ENCODE_SINK_H
+#define ZT_ENCODE_SINK_H
+
+#include <stdbool.h>
+
+#include <zoetrope/output.h>
+
+typedef struct zt_sink {
+    const char *what; /* for messages: "a movie (.mp4)" */
+    bool (*accepts)(const char *target);
+    /* Makes *state; tells why not. Everything that can be refused is refused here. */
+    zt_status (*open)(void **state, const char *target, const zt_output_format *format,
+                      zt_listener listener);
+    zt_status (*write)(void *state, const zt_image *image, int64_t frame);
+    /* Frees the state. `keep`: complete the files and give them their names; else remove what is
+     * unfinished. */
+    zt_status (*close)(void *state, bool keep);
+} zt_sink;
+
+extern const zt_sink zt_sink_stills, zt_sink_video, zt_sink_checksum;
+
+#endif

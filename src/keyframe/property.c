@@ -1,0 +1,133 @@
+#include "keyframe/property.h"
+
+#include <string.h>
+
+#include "base/text.h"
+
+#define NONE INFINITY
+
+#define CAMERA(field)    offsetof(zt_camera, field)
+#define MATERIAL(field)  offsetof(zt_material, field)
+#define LIGHT(field)     offsetof(zt_light, field)
+#define OBJECT(field)    offsetof(zt_object, field)
+#define PLACEMENT(field) (offsetof(zt_object, placement) + offsetof(zt_placement, field))
+
+/* clang-format off */
+const zt_property zt_properties[] = {
+    {ZT_OWNER_CAMERA, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(position), "where the eye is"},
+    {ZT_OWNER_CAMERA, "look_at", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(look_at), "the point in the middle of the picture"},
+    {ZT_OWNER_CAMERA, "up", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(up), "what is up in the picture, with look_at"},
+    {ZT_OWNER_CAMERA, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, CAMERA(rotation), "instead of look_at: turned from looking along -z"},
+    {ZT_OWNER_CAMERA, "fov", ZT_VALUE_ANGLE, "deg", 1e-6, 179.9, false, CAMERA(fov), "the angle that the picture's height spans"},
+
+    {ZT_OWNER_MATERIAL, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, MATERIAL(color), "the share of light that is thrown back"},
+    {ZT_OWNER_MATERIAL, "reflectivity", ZT_VALUE_NUMBER, NULL, 0, 1, false, MATERIAL(reflectivity), "how much of what the mirror shows is added"},
+
+    {ZT_OWNER_AMBIENT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, LIGHT(color), "the light's color"},
+    {ZT_OWNER_AMBIENT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, false, LIGHT(intensity), "a factor to the color"},
+
+    {ZT_OWNER_POINT, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, LIGHT(position), "where the light is"},
+    {ZT_OWNER_POINT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, LIGHT(color), "the light's color"},
+    {ZT_OWNER_POINT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, false, LIGHT(intensity), "a factor to the color, at distance 1"},
+    {ZT_OWNER_POINT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, false, LIGHT(shadows), "whether objects keep its light off"},
+
+    {ZT_OWNER_PLANE, "normal", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, OBJECT(plane.normal), "what is up from the plane; any length"},
+    {ZT_OWNER_PLANE, "distance", ZT_VALUE_NUMBER, NULL, -NONE, NONE, false, OBJECT(plane.distance), "from the origin to the plane, along the normal"},
+
+    {ZT_OWNER_SPHERE, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, OBJECT(sphere.center), "the middle"},
+    {ZT_OWNER_SPHERE, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, true, OBJECT(sphere.radius), "the radius; 0 hides the sphere"},
+
+    {ZT_OWNER_TRIANGLE, "vertices", ZT_VALUE_VERTICES, NULL, -NONE, NONE, true, OBJECT(triangle.vertices), "the three corners"},
+
+    {ZT_OWNER_MESH, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, PLACEMENT(position), "where the model's origin is"},
+    {ZT_OWNER_MESH, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, PLACEMENT(rotation), "angles around x, then y, then z"},
+    {ZT_OWNER_MESH, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, false, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the mesh"},
+
+    {ZT_OWNER_GROUP, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, PLACEMENT(position), "where the group's origin is"},
+    {ZT_OWNER_GROUP, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, PLACEMENT(rotation), "angles around x, then y, then z"},
+    {ZT_OWNER_GROUP, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, false, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the members"},
+};
+/* clang-format on */
+
+const int zt_property_count = sizeof zt_properties / sizeof zt_properties[0];
+
+const char *zt_owner_name(zt_owner owner) {
+    static const char *const names[ZT_OWNER_COUNT] = {
+        "camera", "material", "ambient", "point", "plane",
+        "sphere", "triangle", "mesh",    "group"};
+    return names[owner];
+}
+
+int zt_value_width(zt_value_kind kind) {
+    switch (kind) {
+    case ZT_VALUE_NUMBER:
+    case ZT_VALUE_ANGLE:
+    case ZT_VALUE_SWITCH: return 1;
+    case ZT_VALUE_VECTOR:
+    case ZT_VALUE_SCALE:
+    case ZT_VALUE_COLOR: return 3;
+    case ZT_VALUE_ROTATION: return 4;
+    case ZT_VALUE_VERTICES: return 9;
+    }
+    return 0;
+}
+
+const zt_property *zt_property_find(zt_owner owner, const char *name) {
+    for (int i = 0; i < zt_property_count; i++)
+        if (zt_properties[i].owner == owner && zt_text_equal(zt_properties[i].name, name))
+            return &zt_properties[i];
+    return NULL;
+}
+
+/* The struct in the scene that an owner's properties are offsets into. */
+static char *owner_struct(const zt_scene *scene, zt_owner owner, int32_t index) {
+    switch (owner) {
+    case ZT_OWNER_CAMERA: return (char *)&scene->camera;
+    case ZT_OWNER_MATERIAL: return (char *)&scene->materials[index];
+    case ZT_OWNER_AMBIENT:
+    case ZT_OWNER_POINT: return (char *)&scene->lights[index];
+    default: return (char *)&scene->objects[index];
+    }
+}
+
+void zt_property_get(double *value, const zt_property *property, const zt_scene *scene,
+                     int32_t index) {
+    const char *field = owner_struct(scene, property->owner, index) + property->offset;
+    if (property->kind == ZT_VALUE_SWITCH) *value = *(const bool *)field;
+    else memcpy(value, field, (size_t)zt_value_width(property->kind) * sizeof *value);
+}
+
+void zt_property_set(const zt_property *property, zt_scene *scene, int32_t index,
+                     const double *value) {
+    char *field = owner_struct(scene, property->owner, index) + property->offset;
+    if (property->kind == ZT_VALUE_SWITCH) *(bool *)field = *value >= 0.5;
+    else memcpy(field, value, (size_t)zt_value_width(property->kind) * sizeof *value);
+}
+
+void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
+    static const zt_placement still = {{0, 0, 0}, {1, 0, 0, 0}, {1, 1, 1}};
+    switch (owner) {
+    case ZT_OWNER_CAMERA:
+        scene->camera = (zt_camera){.up = {0, 1, 0},
+                                    .rotation = {1, 0, 0, 0},
+                                    .fov = 40 * (3.14159265358979323846 / 180)};
+        break;
+    case ZT_OWNER_MATERIAL: scene->materials[index] = (zt_material){{1, 1, 1}, 0}; break;
+    case ZT_OWNER_AMBIENT:
+    case ZT_OWNER_POINT:
+        scene->lights[index] =
+            (zt_light){.kind = owner == ZT_OWNER_POINT ? ZT_LIGHT_POINT : ZT_LIGHT_AMBIENT,
+                       .color = {1, 1, 1},
+                       .intensity = 1,
+                       .shadows = true};
+        break;
+    default: {
+        zt_object *object = &scene->objects[index];
+        *object = (zt_object){.shape = (zt_shape)(ZT_SHAPE_PLANE + (owner - ZT_OWNER_PLANE)),
+                              .parent = -1,
+                              .material = -1,
+                              .mesh = -1};
+        if (owner == ZT_OWNER_MESH || owner == ZT_OWNER_GROUP) object->placement = still;
+    }
+    }
+}

@@ -1,0 +1,104 @@
+/* The scene: what rays can meet during one shutter opening. Arrays of plain numbers and indices;
+ * no names, no curves, no pointers between things, -1 for none. The time wing writes it, the
+ * light wing reads it; this struct is all they share.
+ *
+ * Lengths are in the description's unit, angles in radians, colours in linear Rec. 709 light.
+ * The system of axes is right-handed; y is up by default. */
+#ifndef ZT_SCENE_SCENE_H
+#define ZT_SCENE_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/quat.h"
+#include "base/vec.h"
+#include "base/xform.h"
+#include "scene/mesh.h"
+
+typedef enum zt_shape {
+    ZT_SHAPE_PLANE,
+    ZT_SHAPE_SPHERE,
+    ZT_SHAPE_TRIANGLE,
+    ZT_SHAPE_MESH,
+    ZT_SHAPE_GROUP, /* nothing to hit: it only moves its members */
+    ZT_SHAPE_COUNT
+} zt_shape;
+
+/* Points p with normal . p = distance * |normal|. A normal of zero: nothing to hit. */
+typedef struct zt_plane {
+    vec3 normal;
+    double distance;
+} zt_plane;
+
+typedef struct zt_sphere {
+    vec3 center;
+    double radius;
+} zt_sphere;
+
+typedef struct zt_triangle {
+    vec3 vertices[3];
+} zt_triangle;
+
+/* Scale, then rotate, then move. */
+typedef struct zt_placement {
+    vec3 position;
+    quat rotation;
+    vec3 scale;
+} zt_placement;
+
+/* Members come after their group: parent < own index. The index of an object settles ties between
+ * equal hits. */
+typedef struct zt_object {
+    zt_shape shape;
+    int32_t parent;   /* the group that it is in, or -1 */
+    int32_t material; /* -1 in groups */
+    int32_t mesh;     /* of ZT_SHAPE_MESH, else -1 */
+    union {
+        zt_plane plane;
+        zt_sphere sphere;
+        zt_triangle triangle;
+        zt_placement placement; /* of ZT_SHAPE_MESH and ZT_SHAPE_GROUP */
+    };
+} zt_object;
+
+typedef struct zt_material {
+    vec3 color;
+    double reflectivity;
+} zt_material;
+
+typedef enum zt_light_kind { ZT_LIGHT_AMBIENT, ZT_LIGHT_POINT } zt_light_kind;
+
+typedef struct zt_light {
+    zt_light_kind kind;
+    vec3 color;
+    double intensity;
+    vec3 position; /* of ZT_LIGHT_POINT, as is the next */
+    bool shadows;
+} zt_light;
+
+/* Looks along its own -z with +y up; `aimed` ones turn towards look_at instead of by rotation. */
+typedef struct zt_camera {
+    vec3 position, look_at, up;
+    quat rotation;
+    bool aimed;
+    double fov; /* the vertical opening */
+} zt_camera;
+
+typedef struct zt_scene {
+    zt_camera camera;
+    const zt_mesh *meshes; /* the film's, the same in each of its scenes */
+    zt_material *materials;
+    zt_light *lights;
+    zt_object *objects;
+    int32_t mesh_count, material_count, light_count, object_count;
+    int32_t reflection_depth; /* how many mirrors a ray may meet, one after the other */
+} zt_scene;
+
+/* The transform of each object's group, all groups above included, written to `worlds`
+ * (object_count of them): from the space that the object's numbers are given in to the world. */
+void zt_scene_worlds(xform *worlds, const zt_scene *scene);
+
+/* The camera's axes in the world: x right, y up, z against the view; `shift` is its position. */
+xform zt_camera_xform(const zt_camera *camera);
+
+#endif

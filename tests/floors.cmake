@@ -1,0 +1,100 @@
+# Folders are floors: fails on an include that looks up, on a foreign library's header outside of
+# its one door, and on a program that sees more than the public headers.
+# Run as: cmake -DROOT=<the project> -P tests/floors.cmake
+
+set(folders base image scene keyframe description tracer render encode sequence cli)
+
+# What each folder may see besides itself, folders and public headers alike.
+set(sees_base)
+set(sees_image base)
+set(sees_scene base image)
+set(sees_keyframe base image scene)
+set(sees_description base image scene keyframe)
+set(sees_tracer base image scene)
+set(sees_render base image scene tracer)
+set(sees_encode base image)
+set(sees_sequence base image scene keyframe tracer render encode)
+set(sees_cli)
+
+# The floor that each public header belongs to.
+set(header_status base)
+set(header_rate base)
+set(header_image image)
+set(header_animation keyframe)
+set(header_output encode)
+set(header_renderer sequence)
+set(header_zoetrope cli)
+
+# Each foreign header, by the beginning of its name, and its one door.
+set(doors
+    "pthread.h|base/pool.c"
+    "xxh|base/hash.c"
+    "OpenImageIO/|image/file.cpp"
+    "lua|keyframe/expression.c"
+    "yaml.h|description/document.c"
+    "embree|tracer/meshes.c"
+    "libav|encode/video.c"
+    "libsw|encode/video.c"
+    "SDL|cli/preview.c")
+
+# Headers of C, C++ and POSIX that any file may include.
+set(common "^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
+signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
+unistd|sys/[a-z]+)(\\.h)?$")
+
+set(mistakes "")
+file(GLOB_RECURSE files RELATIVE ${ROOT}/src ${ROOT}/src/*.c ${ROOT}/src/*.h ${ROOT}/src/*.cpp)
+list(LENGTH files file_count)
+if(file_count EQUAL 0)
+  message(FATAL_ERROR "no sources below ${ROOT}/src")
+endif()
+
+foreach(file IN LISTS files)
+  string(REGEX REPLACE "/.*" "" folder ${file})
+  if(NOT folder IN_LIST folders)
+    list(APPEND mistakes "${file}: its folder is no floor")
+    continue()
+  endif()
+  set(allowed ${folder} ${sees_${folder}})
+  file(STRINGS ${ROOT}/src/${file} lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line IN LISTS lines)
+    string(REGEX MATCH "[<\"]([^>\"]+)[>\"]" _ "${line}")
+    set(name "${CMAKE_MATCH_1}")
+    if(line MATCHES "\"")
+      string(REGEX REPLACE "/.*" "" target "${name}")
+      if(NOT target IN_LIST allowed)
+        list(APPEND mistakes "${file} includes \"${name}\", which ${folder} may not see")
+      elseif(NOT EXISTS ${ROOT}/src/${name})
+        list(APPEND mistakes "${file} includes \"${name}\", which is not written from the root")
+      endif()
+    elseif(name MATCHES "^zoetrope/([a-z]+)\\.h$")
+      set(floor "${header_${CMAKE_MATCH_1}}")
+      if(NOT floor)
+        list(APPEND mistakes "${file} includes <${name}>, which belongs to no floor")
+      elseif(NOT folder STREQUAL "cli" AND NOT floor IN_LIST allowed)
+        list(APPEND mistakes "${file} includes <${name}> of ${floor}, which ${folder} may not see")
+      endif()
+    elseif(NOT name MATCHES "${common}")
+      set(door "")
+      foreach(pair IN LISTS doors)
+        string(REGEX MATCH "^([^|]+)\\|(.+)$" _ "${pair}")
+        set(door_file "${CMAKE_MATCH_2}")
+        string(FIND "${name}" "${CMAKE_MATCH_1}" at)
+        if(at EQUAL 0)
+          set(door "${door_file}")
+        endif()
+      endforeach()
+      if(NOT door)
+        list(APPEND mistakes "${file} includes <${name}>, a foreign library without a door")
+      elseif(NOT door STREQUAL file)
+        list(APPEND mistakes "${file} includes <${name}>, whose one door is ${door}")
+      endif()
+    endif()
+  endforeach()
+endforeach()
+
+if(mistakes)
+  list(JOIN mistakes "\n  " text)
+  message(FATAL_ERROR "floors:\n  ${text}")
+endif()
+message(STATUS "floors: ${file_count} files look only down")
