@@ -2,6 +2,8 @@
 # its one door, and on a program that sees more than the public headers.
 # Run as: cmake -DROOT=<the project> -P tests/floors.cmake
 
+cmake_minimum_required(VERSION 3.25)
+
 set(folders base image scene keyframe description tracer render encode sequence cli)
 
 # What each folder may see besides itself, folders and public headers alike.

@@ -1,4 +1,5 @@
-/* An animation: a description read and checked. Immutable; any number of threads may read it. */
+/* An animation: a description read and checked. Immutable; any number of threads may read it.
+ */
 #ifndef ZOETROPE_ANIMATION_H
 #define ZOETROPE_ANIMATION_H
 
@@ -15,13 +16,14 @@ extern "C" {
 
 typedef struct zt_animation zt_animation;
 
-/* What the description says of the film as a whole. Frames are numbered 0 .. frame_count - 1. */
+/* What the description says of the film as a whole. Frames are numbered 0 .. frame_count - 1.
+ */
 typedef struct zt_film {
-    int width, height;   /* pixels */
+    int width, height; /* pixels */
     zt_rate rate;
     int64_t frame_count; /* at least 1 */
     zt_view view;
-    int samples;         /* a pixel, at least 1 */
+    int samples; /* a pixel, at least 1 */
 } zt_film;
 
 /* How much there is, for a summary. */
@@ -33,9 +35,9 @@ typedef struct zt_contents {
     int track_count; /* properties that are keyed */
 } zt_contents;
 
-/* Reads the description at `path` with all that it refers to. All mistakes are told before giving
- * up. ZT_EDESCRIPTION for mistakes, ZT_EFILE when the file itself cannot be read. The caller frees
- * the animation. */
+/* Reads the description at `path` with all that it refers to. All mistakes are told before
+ * giving up. ZT_EDESCRIPTION for mistakes, ZT_EFILE when the file itself cannot be read. The
+ * caller frees the animation. */
 zt_status zt_animation_read(zt_animation **animation, const char *path, zt_listener listener);
 void zt_animation_free(zt_animation **animation);
 
@@ -44,10 +46,10 @@ zt_contents zt_animation_contents(const zt_animation *animation);
 
 /* One thing that moves, in words. */
 typedef struct zt_movement {
-    const char *name;          /* "ball.center", "camera.fov"; owned by the animation */
-    const char *curve;         /* "smooth" */
+    const char *name;  /* "ball.center", "camera.fov"; owned by the animation */
+    const char *curve; /* "smooth" */
     int key_count;
-    double first_s, last_s;    /* times of its first and last key, seconds */
+    double first_s, last_s; /* times of its first and last key, seconds */
 } zt_movement;
 
 /* `index` from 0 to track_count - 1, in the order of the description. */

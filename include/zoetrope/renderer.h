@@ -35,13 +35,14 @@ void zt_renderer_close(zt_renderer **renderer);
 /* What an output for this renderer's images has to be told. */
 zt_output_format zt_renderer_format(const zt_renderer *renderer);
 
-/* Renders one frame into an image of the renderer's size. Frames outside of the film's range are
- * legal: their curves hold. ZT_ESTOPPED when the watcher (may be NULL) said so. */
+/* Renders one frame into an image of the renderer's size. Frames outside of the film's range
+ * are legal: their curves hold. ZT_ESTOPPED when the watcher (may be NULL) said so. */
 zt_status zt_renderer_frame(zt_renderer *renderer, int64_t frame, zt_image *image,
                             const zt_watcher *watcher);
 
-/* Renders frames first .. last, both included, to an output, writing behind the rendering. When it
- * is stopped or fails, the frames written before are complete, and the output can be closed. */
+/* Renders frames first .. last, both included, to an output, writing behind the rendering. When
+ * it is stopped or fails, the frames written before are complete, and the output can be closed.
+ */
 zt_status zt_renderer_sequence(zt_renderer *renderer, int64_t first, int64_t last,
                                zt_output *output, const zt_watcher *watcher);
 

@@ -34,17 +34,17 @@ typedef struct zt_message {
     const char *source_line; /* the line itself without its newline, or NULL */
 } zt_message;
 
-/* Who listens. `tell` may be NULL: then nothing is heard, and only the status tells. It is called
- * from the thread that called the library, but for writing behind the rendering, which may tell
- * from a thread of its own; never from two threads at once within one call. */
+/* Who listens. `tell` may be NULL: then nothing is heard, and only the status tells. It is
+ * called from the thread that called the library, but for writing behind the rendering, which
+ * may tell from a thread of its own; never from two threads at once within one call. */
 typedef struct zt_listener {
     void (*tell)(void *user, const zt_message *message);
     void *user;
 } zt_listener;
 
 /* Writes a message as compilers do, "file:line:column: error: text" with the source line and a
- * caret below where they are known, into `buffer` of `size` bytes, always terminated. Returns the
- * length of the whole text as snprintf does. */
+ * caret below where they are known, into `buffer` of `size` bytes, always terminated. Returns
+ * the length of the whole text as snprintf does. */
 size_t zt_message_format(char *buffer, size_t size, const zt_message *message);
 
 #ifdef __cplusplus

@@ -35,8 +35,10 @@ static zt_arena_chunk *chunk_with_room(zt_arena *arena, size_t size) {
     }
     zt_arena_chunk *fresh = chunk_create(size > CHUNK_SIZE ? size : CHUNK_SIZE);
     if (!fresh) return NULL;
-    if (last) last->next = fresh;
-    else arena->first = fresh;
+    if (last)
+        last->next = fresh;
+    else
+        arena->first = fresh;
     return arena->current = fresh;
 }
 

@@ -1,20 +1,32 @@
 #include "base/diag.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { TEXT_MAX = 1024, LINE_MAX_SHOWN = 512 };
+enum {
+    TEXT_MAX = 6 * 1024, /* bytes: the longest path and a sentence around it */
+    LINE_SHOWN = 120     /* characters of a long source line */
+};
 
 const char *zt_status_text(zt_status status) {
     switch (status) {
-    case ZT_OK: return "done";
-    case ZT_EDESCRIPTION: return "the description has mistakes";
-    case ZT_EARGUMENT: return "wrong use";
-    case ZT_EMEMORY: return "out of memory";
-    case ZT_EFILE: return "a file could not be read or written";
-    case ZT_EUNSUPPORTED: return "not supported";
-    case ZT_ESTOPPED: return "stopped";
+    case ZT_OK:
+        return "done";
+    case ZT_EDESCRIPTION:
+        return "the description has mistakes";
+    case ZT_EARGUMENT:
+        return "wrong use";
+    case ZT_EMEMORY:
+        return "out of memory";
+    case ZT_EFILE:
+        return "a file could not be read or written";
+    case ZT_EUNSUPPORTED:
+        return "not supported";
+    case ZT_ESTOPPED:
+        return "stopped";
     }
     return "unknown status";
 }
@@ -22,21 +34,22 @@ const char *zt_status_text(zt_status status) {
 static void tell(zt_listener listener, zt_severity severity, const zt_place *place,
                  const char *format, va_list arguments) {
     if (!listener.tell) return;
-    char text[TEXT_MAX], line[LINE_MAX_SHOWN];
+    char text[TEXT_MAX];
     vsnprintf(text, sizeof text, format, arguments);
     zt_message message = {.severity = severity, .text = text};
+    char *line = NULL;
     if (place) {
         message.file = place->file;
         message.line = place->line;
         message.column = place->column;
         message.length = place->length > 0 ? place->length : 1;
-        if (place->source_line) {
-            int shown = (int)strcspn(place->source_line, "\r\n");
-            snprintf(line, sizeof line, "%.*s", shown, place->source_line);
-            message.source_line = line;
-        }
+        /* Without the memory for its line, a message is still told. */
+        if (place->source_line)
+            line = strndup(place->source_line, strcspn(place->source_line, "\r\n"));
+        message.source_line = line;
     }
     listener.tell(listener.user, &message);
+    free(line);
 }
 
 void zt_tell(zt_listener listener, zt_severity severity, const char *format, ...) {
@@ -54,23 +67,47 @@ void zt_tell_at(zt_listener listener, zt_severity severity, const zt_place *plac
     va_end(arguments);
 }
 
-/* The line of blanks, caret and tildes below a source line. Tabs stay tabs, so that the caret
- * stands below its character whatever the width of a tab. */
-static void mark(char *line, size_t size, const zt_message *message) {
-    size_t used = 0;
-    const char *source = message->source_line;
-    for (int column = 1; column < message->column && used + 1 < size; column++) {
-        line[used++] = *source == '\t' ? '\t' : ' ';
-        if (*source) source++;
-        while (((unsigned char)*source & 0xC0) == 0x80) source++; /* within a UTF-8 character */
+/* Where the text is after `count` more of its UTF-8 characters, or at its end. */
+static const char *skip_characters(const char *text, int count) {
+    for (; count > 0 && *text; count--) {
+        text++;
+        while (((unsigned char)*text & 0xC0) == 0x80) text++;
     }
-    for (int i = 0; i < message->length && used + 1 < size; i++) {
-        if (i > 0 && !*source) break; /* never beyond the end of the line */
-        line[used++] = i == 0 ? '^' : '~';
-        if (*source) source++;
-        while (((unsigned char)*source & 0xC0) == 0x80) source++;
+    return text;
+}
+
+/* The line of blanks, caret and tildes below a source line, `column` counted from 0. Tabs stay
+ * tabs, so that the caret stands below its character whatever the width of a tab. */
+static void mark(char marks[LINE_SHOWN + 1], const char *source, int column, int length) {
+    int used = 0;
+    for (; used < column && used < LINE_SHOWN - 1; used++) {
+        marks[used] = *source == '\t' ? '\t' : ' ';
+        source = skip_characters(source, 1);
     }
-    line[used] = '\0';
+    marks[used++] = '^';
+    source = skip_characters(source, 1);
+    for (int i = 1; i < length && used < LINE_SHOWN && *source; i++) {
+        marks[used++] = '~'; /* never beyond the end of the line */
+        source = skip_characters(source, 1);
+    }
+    marks[used] = '\0';
+}
+
+/* A message with its source line: of a long one, the part around the marked column. */
+static int format_with_source(char *buffer, size_t size, const zt_message *message,
+                              const char *severity) {
+    int column = message->column > 0 ? message->column - 1 : 0;
+    int first = column < LINE_SHOWN / 2 ? 0 : column - LINE_SHOWN / 2;
+    const char *shown = message->source_line;
+    if (skip_characters(shown, LINE_SHOWN)[0] == '\0') first = 0;
+    shown = skip_characters(shown, first);
+    int shown_length = (int)(skip_characters(shown, LINE_SHOWN) - shown);
+    char marks[LINE_SHOWN + 1];
+    mark(marks, shown, column - first, message->length);
+    int margin = snprintf(NULL, 0, "%5d", message->line);
+    return snprintf(buffer, size, "%s:%d:%d: %s: %s\n%*d | %.*s\n%*s | %s", message->file,
+                    message->line, message->column, severity, message->text, margin,
+                    message->line, shown_length, shown, margin, "", marks);
 }
 
 size_t zt_message_format(char *buffer, size_t size, const zt_message *message) {
@@ -84,12 +121,12 @@ size_t zt_message_format(char *buffer, size_t size, const zt_message *message) {
     else if (!message->source_line)
         length = snprintf(buffer, size, "%s:%d:%d: %s: %s", message->file, message->line,
                           message->column, severity, message->text);
-    else {
-        char marks[LINE_MAX_SHOWN];
-        mark(marks, sizeof marks, message);
-        length = snprintf(buffer, size, "%s:%d:%d: %s: %s\n%5d | %s\n      | %s", message->file,
-                          message->line, message->column, severity, message->text,
-                          message->line, message->source_line, marks);
-    }
-    return length > 0 ? (size_t)length : 0;
+    else
+        length = format_with_source(buffer, size, message, severity);
+    if (length < 0) length = 0;
+    /* What a stranger wrote into a file must not command the terminal. */
+    for (size_t i = 0; i < (size_t)length && i + 1 < size; i++)
+        if (iscntrl((unsigned char)buffer[i]) && buffer[i] != '\n' && buffer[i] != '\t')
+            buffer[i] = '?';
+    return (size_t)length;
 }

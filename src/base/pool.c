@@ -9,6 +9,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 struct zt_pool {
     pthread_mutex_t mutex;
@@ -41,8 +42,9 @@ static int start_thread(pthread_t *thread, void *(*body)(void *), void *argument
 
 int zt_pool_core_count(void) {
     cpu_set_t cores;
-    if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
-    int count = CPU_COUNT(&cores);
+    /* Fails where the kernel knows more cores than the set has room for. */
+    bool known = sched_getaffinity(0, sizeof cores, &cores) == 0;
+    int count = known ? CPU_COUNT(&cores) : (int)sysconf(_SC_NPROCESSORS_ONLN);
     return count > 0 ? count : 1;
 }
 
@@ -89,10 +91,11 @@ zt_status zt_pool_open(zt_pool **out, int thread_count) {
         started = self != NULL;
         if (!started) break;
         *self = (worker){pool, pool->thread_count};
-        started =
-            start_thread(&pool->threads[pool->thread_count - 1], worker_main, self) == 0;
-        if (started) pool->thread_count++;
-        else free(self);
+        started = start_thread(&pool->threads[pool->thread_count - 1], worker_main, self) == 0;
+        if (started)
+            pool->thread_count++;
+        else
+            free(self);
     }
     if (!started) {
         zt_pool_close(&pool);

@@ -9,14 +9,16 @@ typedef struct zt_pool zt_pool;
 /* The number of cores this process may run on; at least 1. */
 int zt_pool_core_count(void);
 
-/* A pool of `thread_count` (at least 1) threads, the caller's own counted: n - 1 are started. */
+/* A pool of `thread_count` (at least 1) threads, the caller's own counted: n - 1 are started.
+ */
 zt_status zt_pool_open(zt_pool **pool, int thread_count);
 void zt_pool_close(zt_pool **pool);
 int zt_pool_thread_count(const zt_pool *pool);
 
-/* Calls task(user, i, worker) once for each i in 0 .. task_count - 1, on all threads; returns when
- * all calls have returned. `worker` is 0 .. thread_count - 1, and no two calls with the same one
- * overlap. Which worker gets which task is open. Not to be called from within a task. */
+/* Calls task(user, i, worker) once for each i in 0 .. task_count - 1, on all threads; returns
+ * when all calls have returned. `worker` is 0 .. thread_count - 1, and no two calls with the
+ * same one overlap. Which worker gets which task is open. Not to be called from within a task.
+ */
 void zt_pool_run(zt_pool *pool, int task_count, void (*task)(void *user, int task, int worker),
                  void *user);
 

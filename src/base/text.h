@@ -9,9 +9,9 @@
 bool zt_text_equal(const char *a, const char *b);
 bool zt_text_ends_with(const char *text, const char *ending, bool ignore_case);
 
-/* How many letters must be put in, left out, changed or swapped with their neighbour to make b out
- * of a (optimal string alignment: Damerau 1964, Levenshtein 1966). Texts longer than 63 letters
- * are taken to be as far apart as the longer one is long. */
+/* How many letters must be put in, left out, changed or swapped with their neighbour to make b
+ * out of a (optimal string alignment: Damerau 1964, Levenshtein 1966). Texts longer than 63
+ * letters are taken to be as far apart as the longer one is long. */
 int zt_text_distance(const char *a, const char *b);
 
 /* Remembers the nearest of the candidates shown to it. */

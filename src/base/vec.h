@@ -19,7 +19,9 @@ static inline vec3 vec3_cross(vec3 a, vec3 b) {
 }
 
 /* The largest magnitude among the components. */
-static inline double vec3_max_abs(vec3 a) { return fmax(fmax(fabs(a.x), fabs(a.y)), fabs(a.z)); }
+static inline double vec3_max_abs(vec3 a) {
+    return fmax(fmax(fabs(a.x), fabs(a.y)), fabs(a.z));
+}
 
 /* Length without overflow or underflow on the way. */
 static inline double vec3_length(vec3 a) {

@@ -8,10 +8,10 @@
 
 /* Owns nothing: the arrays belong to the arena that the reader was given. */
 typedef struct zt_mesh {
-    /* Positions are stored as `origin` + float, so that a model far from its own origin keeps its
-     * shape; the origin is zero where the file's numbers fit floats as they are. */
+    /* Positions are stored as `origin` + float, so that a model far from its own origin keeps
+     * its shape; the origin is zero where the file's numbers fit floats as they are. */
     vec3 origin;
-    const float *positions;    /* vertex_count * 3 */
+    const float *positions; /* vertex_count * 3, and at least one more float to read behind */
     const uint32_t *triangles; /* triangle_count * 3 indices of vertices, each < vertex_count */
     int32_t vertex_count, triangle_count;
     vec3 low, high; /* bounds of the positions with `origin` added */

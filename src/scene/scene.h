@@ -1,6 +1,6 @@
-/* The scene: what rays can meet during one shutter opening. Arrays of plain numbers and indices;
- * no names, no curves, no pointers between things, -1 for none. The time wing writes it, the
- * light wing reads it; this struct is all they share.
+/* The scene: what rays can meet during one shutter opening. Arrays of plain numbers and
+ * indices; no names, no curves, no pointers between things, -1 for none. The time wing writes
+ * it, the light wing reads it; this struct is all they share.
  *
  * Lengths are in the description's unit, angles in radians, colours in linear Rec. 709 light.
  * The system of axes is right-handed; y is up by default. */
@@ -46,8 +46,8 @@ typedef struct zt_placement {
     vec3 scale;
 } zt_placement;
 
-/* Members come after their group: parent < own index. The index of an object settles ties between
- * equal hits. */
+/* Members come after their group: parent < own index. The index of an object settles ties
+ * between equal hits. */
 typedef struct zt_object {
     zt_shape shape;
     int32_t parent;   /* the group that it is in, or -1 */
@@ -76,7 +76,8 @@ typedef struct zt_light {
     bool shadows;
 } zt_light;
 
-/* Looks along its own -z with +y up; `aimed` ones turn towards look_at instead of by rotation. */
+/* Looks along its own -z with +y up; `aimed` ones turn towards look_at instead of by rotation.
+ */
 typedef struct zt_camera {
     vec3 position, look_at, up;
     quat rotation;
@@ -95,10 +96,12 @@ typedef struct zt_scene {
 } zt_scene;
 
 /* The transform of each object's group, all groups above included, written to `worlds`
- * (object_count of them): from the space that the object's numbers are given in to the world. */
+ * (object_count of them): from the space that the object's numbers are given in to the world.
+ */
 void zt_scene_worlds(xform *worlds, const zt_scene *scene);
 
-/* The camera's axes in the world: x right, y up, z against the view; `shift` is its position. */
+/* The camera's axes in the world: x right, y up, z against the view; `shift` is its position.
+ */
 xform zt_camera_xform(const zt_camera *camera);
 
 #endif

@@ -1,0 +1,20 @@
+/* The lens: from a place on the picture to a ray into the scene. */
+#ifndef ZT_RENDER_LENS_H
+#define ZT_RENDER_LENS_H
+
+#include "scene/scene.h"
+#include "tracer/ray.h"
+
+/* A camera made ready for a picture of a given size: the ray through the place (x, y), in
+ * pixels from the top left corner, runs from the origin along corner + x right + y down. */
+typedef struct zt_lens {
+    vec3 corner, right, down;
+} zt_lens;
+
+/* A perspective lens whose `fov` spans the height of the picture; pixels are square. */
+zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height);
+
+/* Makes ray number i of the batch the one through (x, y). */
+void zt_lens_ray(zt_batch *rays, int i, const zt_lens *lens, double x, double y);
+
+#endif

@@ -1,0 +1,124 @@
+#include "render/render.h"
+
+#include <assert.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/diag.h"
+#include "tracer/sampler.h"
+
+enum { TILE_SIDE = 16 };
+static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
+
+struct zt_render_work {
+    zt_classic_trace *trace;
+    struct render_thread {
+        zt_batch rays;
+        zt_radiance light, sum;
+        int32_t taken[ZT_BATCH]; /* samples in the sum */
+        zt_classic_work classic;
+    } * threads;
+};
+
+/* One frame under way. */
+typedef struct frame {
+    zt_image *image;
+    const zt_render_job *job;
+    const zt_render_work *work;
+    int tile_columns;
+    atomic_bool stopped;
+    atomic_llong left_out_count;
+} frame;
+
+/* The pixels of a tile: columns x .. x + width - 1, rows y .. y + height - 1. */
+typedef struct tile {
+    int x, y, width, height;
+} tile;
+
+static int min_int(int a, int b) { return a < b ? a : b; }
+
+zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_count) {
+    zt_render_work *work = ZT_PUSH(arena, zt_render_work, 1);
+    if (!work) return ZT_EMEMORY;
+    work->trace = zt_classic_select();
+    work->threads = ZT_PUSH(arena, struct render_thread, (size_t)thread_count);
+    *out = work;
+    return work->threads ? ZT_OK : ZT_EMEMORY;
+}
+
+static void make_rays(zt_batch *rays, const zt_render_job *job, tile area, int sample) {
+    int i = 0;
+    for (int y = area.y; y < area.y + area.height; y++)
+        for (int x = area.x; x < area.x + area.width; x++, i++) {
+            float u, v;
+            zt_sample_pixel(&u, &v, x, y, sample, job->samples);
+            zt_lens_ray(rays, i, &job->lens, x + (double)u, y + (double)v);
+        }
+    rays->count = i;
+}
+
+/* Adds a sample of each pixel to the sums; returns how many were not finite. */
+static int add_samples(struct render_thread *own, int count) {
+    const zt_radiance *light = &own->light;
+    int left_out = 0;
+    for (int i = 0; i < count; i++) {
+        real r = light->r[i], g = light->g[i], b = light->b[i];
+        /* Infinities and NaN, alone of all numbers, are not 0 when taken from themselves. */
+        bool finite = (r - r) + (g - g) + (b - b) == 0;
+        own->sum.r[i] += finite ? r : 0;
+        own->sum.g[i] += finite ? g : 0;
+        own->sum.b[i] += finite ? b : 0;
+        own->taken[i] += finite;
+        left_out += !finite;
+    }
+    return left_out;
+}
+
+static void fill_pixels(zt_image *image, const struct render_thread *own, tile area) {
+    int i = 0;
+    for (int y = area.y; y < area.y + area.height; y++) {
+        float *pixel = image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)area.x);
+        for (int x = 0; x < area.width; x++, i++, pixel += 4) {
+            real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
+            pixel[0] = own->sum.r[i] * share;
+            pixel[1] = own->sum.g[i] * share;
+            pixel[2] = own->sum.b[i] * share;
+            pixel[3] = 1;
+        }
+    }
+}
+
+static void render_tile(void *user, int index, int worker) {
+    frame *f = user;
+    const zt_render_job *job = f->job;
+    if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return;
+    int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
+    tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
+                 min_int(TILE_SIDE, f->image->height - y)};
+    struct render_thread *own = &f->work->threads[worker];
+    memset(&own->sum, 0, sizeof own->sum);
+    memset(own->taken, 0, sizeof own->taken);
+    int left_out = 0;
+    for (int sample = 0; sample < job->samples; sample++) {
+        if (job->stopped && job->stopped(job->user)) {
+            atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
+            return;
+        }
+        make_rays(&own->rays, job, area, sample);
+        int count = own->rays.count;
+        f->work->trace(&own->light, job->tracer, &own->rays, &own->classic);
+        left_out += add_samples(own, count);
+    }
+    fill_pixels(f->image, own, area);
+    if (left_out) atomic_fetch_add_explicit(&f->left_out_count, left_out, memory_order_relaxed);
+}
+
+zt_status zt_render(zt_image *image, int64_t *left_out_count, const zt_render_job *job,
+                    zt_render_work *work, zt_pool *pool) {
+    int columns = (image->width + TILE_SIDE - 1) / TILE_SIDE;
+    int rows = (image->height + TILE_SIDE - 1) / TILE_SIDE;
+    frame f = {.image = image, .job = job, .work = work, .tile_columns = columns};
+    zt_pool_run(pool, columns * rows, render_tile, &f);
+    *left_out_count = f.left_out_count;
+    return f.stopped ? ZT_ESTOPPED : ZT_OK;
+}

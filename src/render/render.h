@@ -1,0 +1,34 @@
+/* Renders one frame: tiles on all threads, samples, and the film that takes their light. */
+#ifndef ZT_RENDER_RENDER_H
+#define ZT_RENDER_RENDER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/image.h>
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "render/lens.h"
+#include "tracer/classic.h"
+#include "tracer/tracer.h"
+
+/* What each thread works with; made once in a run. */
+typedef struct zt_render_work zt_render_work;
+zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread_count);
+
+typedef struct zt_render_job {
+    const zt_tracer *tracer;
+    zt_lens lens;
+    int samples;                 /* a pixel, at least 1 */
+    bool (*stopped)(void *user); /* asked before each tile, from any thread; may be NULL */
+    void *user;
+} zt_render_job;
+
+/* Renders into all of `image`. The same bits for any number of threads. A sample that is not
+ * finite is left out of its pixel; `*left_out_count` says how many were. ZT_ESTOPPED when asked
+ * to stop: then the image is unfinished. */
+zt_status zt_render(zt_image *image, int64_t *left_out_count, const zt_render_job *job,
+                    zt_render_work *work, zt_pool *pool);
+
+#endif

@@ -1,0 +1,83 @@
+/* One frame: freeze, prepare, render. */
+#include "sequence/renderer.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "base/diag.h"
+#include "keyframe/animation.h"
+
+enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
+
+static zt_status check_settings(const zt_render_settings *s) {
+    bool both_or_neither = (s->width == 0) == (s->height == 0);
+    bool sides = s->width >= 0 && s->height >= 0 && s->width <= ZT_IMAGE_SIDE_MAX &&
+                 s->height <= ZT_IMAGE_SIDE_MAX;
+    bool counts = s->samples >= 0 && s->samples <= SAMPLES_MAX && s->threads >= 0 &&
+                  s->threads <= THREADS_MAX;
+    return both_or_neither && sides && counts ? ZT_OK : ZT_EARGUMENT;
+}
+
+static zt_status open_parts(zt_renderer *r, int thread_count) {
+    const zt_scene *rest = &r->animation->rest;
+    ZT_TRY(zt_pool_open(&r->pool, thread_count));
+    ZT_TRY(zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, r->listener));
+    return zt_render_work_push(&r->work, &r->run, thread_count);
+}
+
+zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
+                           const zt_render_settings *settings, zt_listener listener) {
+    *out = NULL;
+    ZT_TRY(check_settings(settings));
+    zt_renderer *r = calloc(1, sizeof *r);
+    if (!r) return ZT_EMEMORY;
+    const zt_film *film = &animation->film;
+    r->animation = animation;
+    r->listener = listener;
+    r->samples = settings->samples ? settings->samples : film->samples;
+    r->format = (zt_output_format){settings->width ? settings->width : film->width,
+                                   settings->height ? settings->height : film->height,
+                                   film->rate, film->view};
+    zt_status status =
+        open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
+    if (status != ZT_OK) zt_renderer_close(&r);
+    *out = r;
+    return status;
+}
+
+void zt_renderer_close(zt_renderer **slot) {
+    zt_renderer *r = *slot;
+    if (!r) return;
+    zt_pool_close(&r->pool);
+    zt_meshes_close(&r->meshes);
+    zt_arena_free(&r->run);
+    zt_arena_free(&r->frame);
+    free(r);
+    *slot = NULL;
+}
+
+zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
+
+zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
+                            const zt_watcher *watcher) {
+    if (image->width != r->format.width || image->height != r->format.height)
+        return ZT_EARGUMENT;
+    zt_arena_reset(&r->frame);
+    zt_scene scene;
+    zt_tracer tracer;
+    int64_t left_out_count;
+    ZT_TRY(zt_animation_freeze(&scene, r->animation, zt_rate_time(r->format.rate, frame),
+                               &r->frame));
+    ZT_TRY(zt_tracer_prepare(&tracer, &scene, r->meshes, &r->frame));
+    zt_render_job job = {.tracer = &tracer,
+                         .lens = zt_lens_prepare(&scene.camera, image->width, image->height),
+                         .samples = r->samples,
+                         .stopped = watcher ? watcher->stopped : NULL,
+                         .user = watcher ? watcher->user : NULL};
+    ZT_TRY(zt_render(image, &left_out_count, &job, r->work, r->pool));
+    if (left_out_count > 0)
+        zt_tell(r->listener, ZT_WARNING,
+                "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",
+                frame, left_out_count);
+    return ZT_OK;
+}

@@ -1,0 +1,23 @@
+/* The renderer: where the two wings meet. It owns what lives for the run. */
+#ifndef ZT_SEQUENCE_RENDERER_H
+#define ZT_SEQUENCE_RENDERER_H
+
+#include <zoetrope/renderer.h>
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "render/render.h"
+#include "tracer/meshes.h"
+
+struct zt_renderer {
+    const zt_animation *animation;
+    zt_output_format format;
+    int samples;
+    zt_listener listener;
+    zt_pool *pool;
+    zt_meshes *meshes;
+    zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
+    zt_render_work *work;
+};
+
+#endif

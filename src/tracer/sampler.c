@@ -1,0 +1,44 @@
+#include "tracer/sampler.h"
+
+#include "base/random.h"
+
+static uint32_t reverse_bits(uint32_t x) {
+    x = __builtin_bswap32(x);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/* Owen's nested uniform scramble: each bit is flipped or not depending on the bits above it.
+ * The hash works upwards, so it runs on reversed bits (the constants are Burley's). */
+static uint32_t scramble(uint32_t x, uint32_t seed) {
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+/* Sobol's second dimension: the generator matrix is Pascal's triangle modulo 2. */
+static uint32_t sobol_second(uint32_t index) {
+    uint32_t result = 0, column = 0x80000000u;
+    for (; index; index >>= 1, column ^= column >> 1)
+        if (index & 1) result ^= column;
+    return result;
+}
+
+static float unit_interval(uint32_t bits) { return (float)(bits >> 8) * 0x1p-24f; }
+
+void zt_sample_pixel(float *u, float *v, int x, int y, int sample, int sample_count) {
+    if (sample_count == 1) {
+        *u = *v = 0.5f;
+        return;
+    }
+    uint64_t key = zt_random_key(zt_random_key(0, (uint64_t)x), (uint64_t)y);
+    uint64_t other = zt_random_key(key, 0);
+    uint32_t index = scramble((uint32_t)sample, (uint32_t)key);
+    *u = unit_interval(scramble(reverse_bits(index), (uint32_t)(key >> 32)));
+    *v = unit_interval(scramble(sobol_second(index), (uint32_t)other));
+}
