@@ -1,0 +1,514 @@
+/* Shows that the floor all others stand on does what its headers promise. */
+#include <limits.h>
+#include <locale.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <threads.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+#include "base/diag.h"
+#include "base/hash.h"
+#include "base/pool.h"
+#include "base/random.h"
+#include "base/text.h"
+#include "base/xform.h"
+
+static const double pi = 3.14159265358979323846;
+
+static void assert_vec(vec3 found, vec3 expected, double tolerance) {
+    if (vec3_max_abs(vec3_sub(found, expected)) <= tolerance) return;
+    fail_msg("(%.17g, %.17g, %.17g) is not (%.17g, %.17g, %.17g)", found.x, found.y, found.z,
+             expected.x, expected.y, expected.z);
+}
+
+/* Lengths are right where their squares would overflow or vanish. */
+static void vectors_of_any_magnitude(void **state) {
+    (void)state;
+    const double magnitudes[] = {1, 1e-300, 1e-160, 1e160, 1e300};
+    for (int i = 0; i < 5; i++) {
+        double m = magnitudes[i];
+        vec3 v = {2 * m, -3 * m, 6 * m};
+        assert_true(fabs(vec3_length(v) / (7 * m) - 1) < 1e-15);
+        assert_vec(vec3_normalize(v), (vec3){2.0 / 7, -3.0 / 7, 6.0 / 7}, 1e-15);
+    }
+    assert_true(vec3_length((vec3){0, 0, 0}) == 0);
+    assert_vec(vec3_normalize((vec3){0, 0, 0}), (vec3){0, 0, 0}, 0);
+    assert_true(isinf(vec3_length((vec3){1, -INFINITY, 0})));
+    assert_true(isnan(vec3_length((vec3){NAN, NAN, NAN})));
+    assert_vec(vec3_cross((vec3){1, 0, 0}, (vec3){0, 1, 0}), (vec3){0, 0, 1}, 0);
+}
+
+/* Quaternions turn counterclockwise, multiply as matrices do, and Euler angles go x, y, z. */
+static void rotations(void **state) {
+    (void)state;
+    const vec3 one = {1, 1, 1}, here = {0, 0, 0};
+    quat quarter = quat_axis_angle((vec3){0, 0, 1}, pi / 2);
+    xform m = xform_place(here, quarter, one);
+    assert_vec(xform_vector(&m, (vec3){1, 0, 0}), (vec3){0, 1, 0}, 1e-15);
+
+    /* y goes to z around x, which goes to x around y, which goes to y around z. */
+    m = xform_place(here, quat_euler_xyz((vec3){pi / 2, pi / 2, pi / 2}), one);
+    assert_vec(xform_vector(&m, (vec3){0, 1, 0}), (vec3){0, 1, 0}, 1e-15);
+    m = xform_place(here, quat_euler_xyz((vec3){pi / 2, pi / 2, 0}), one);
+    assert_vec(xform_vector(&m, (vec3){0, 1, 0}), (vec3){1, 0, 0}, 1e-15);
+
+    quat a = quat_axis_angle(vec3_normalize((vec3){1, 2, 3}), 0.7);
+    quat b = quat_axis_angle(vec3_normalize((vec3){-2, 1, 0.5}), 2.1);
+    xform of_a = xform_place(here, a, one), of_b = xform_place(here, b, one);
+    xform of_product = xform_place(here, quat_mul(a, b), one);
+    xform product = xform_mul(&of_a, &of_b);
+    assert_vec(of_product.x, product.x, 1e-15);
+    assert_vec(of_product.y, product.y, 1e-15);
+    assert_vec(of_product.z, product.z, 1e-15);
+    assert_true(fabs(xform_determinant(&of_a) - 1) < 1e-15);
+
+    quat back = quat_mul(quat_conjugate(a), a);
+    assert_true(fabs(quat_dot(back, quat_identity()) - 1) < 1e-15);
+    assert_true(quat_normalize((quat){0, 0, 0, 0}).w == 1);
+    assert_true(fabs(quat_normalize((quat){0, 0, -5, 0}).y + 1) < 1e-15);
+}
+
+/* Scale, then rotate, then move; and a product means the right factor first. */
+static void placing(void **state) {
+    (void)state;
+    quat quarter = quat_axis_angle((vec3){0, 0, 1}, pi / 2);
+    xform m = xform_place((vec3){10, 20, 30}, quarter, (vec3){2, 3, 4});
+    assert_vec(xform_point(&m, (vec3){1, 1, 1}), (vec3){10 - 3, 20 + 2, 30 + 4}, 1e-14);
+    xform shift = xform_identity();
+    shift.shift = (vec3){1, 0, 0};
+    xform both = xform_mul(&m, &shift);
+    assert_vec(xform_point(&both, (vec3){0, 0, 0}), xform_point(&m, (vec3){1, 0, 0}), 1e-14);
+}
+
+/* A normal stays across its surface and on its outer side, in mirrors and in flattenings too.
+ */
+static void normals(void **state) {
+    (void)state;
+    quat turn = quat_axis_angle(vec3_normalize((vec3){1, 1, 0}), 1);
+    const vec3 scales[] = {{1, 2, 3}, {-1, 2, 3}, {-1, -2, 3}, {-1, -2, -3}};
+    vec3 n = vec3_normalize((vec3){1, 2, -1});
+    vec3 s = vec3_cross(n, (vec3){0, 1, 0}), t = vec3_cross(n, s);
+    for (int i = 0; i < 4; i++) {
+        xform m = xform_place((vec3){5, 6, 7}, turn, scales[i]);
+        vec3 moved = xform_normal(&m, n);
+        assert_true(fabs(vec3_dot(moved, xform_vector(&m, s))) < 1e-14);
+        assert_true(fabs(vec3_dot(moved, xform_vector(&m, t))) < 1e-14);
+        assert_true(vec3_dot(moved, xform_vector(&m, n)) > 0.1); /* n itself goes outwards */
+    }
+    xform flat = xform_place((vec3){0, 0, 0}, quat_identity(), (vec3){1, 0, 1});
+    assert_vec(vec3_normalize(xform_normal(&flat, (vec3){0.6, 0.8, 0})), (vec3){0, 1, 0}, 0);
+}
+
+/* The first numbers of SplitMix64 with seed 0, as its authors' program prints them. */
+static void random_numbers(void **state) {
+    (void)state;
+    assert_true(zt_random_key(0, 0) == UINT64_C(0xE220A8397B1DCDAF));
+    assert_true(zt_random_key(0, 1) == UINT64_C(0x6E789E6AA1B965F4));
+    assert_true(zt_random_key(0, 2) == UINT64_C(0x06C45D188009454F));
+}
+
+/* XXH3's checksum of nothing, from its specification. */
+static void checksums(void **state) {
+    (void)state;
+    zt_hash nothing = zt_hash_bytes("", 0);
+    assert_true(nothing.high == UINT64_C(0x99AA06D3014798D8));
+    assert_true(nothing.low == UINT64_C(0x6001C324468D497F));
+    zt_hash other = zt_hash_bytes("\0", 1);
+    assert_true(other.high != nothing.high && other.low != nothing.low);
+}
+
+/* Pieces are zero, aligned and apart from each other, in the first round and in the next. */
+static void arena_pieces(void **state) {
+    (void)state;
+    enum { COUNT = 300 };
+    zt_arena arena = {0};
+    unsigned char *pieces[COUNT], *first_round[COUNT];
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < COUNT; i++) {
+            size_t size = (size_t)i * 37;
+            pieces[i] = zt_arena_push(&arena, size);
+            assert_non_null(pieces[i]);
+            assert_int_equal((uintptr_t)pieces[i] % 64, 0);
+            for (size_t k = 0; k < size; k++) assert_int_equal(pieces[i][k], 0);
+            memset(pieces[i], i % 255 + 1, size);
+            if (round == 0)
+                first_round[i] = pieces[i];
+            else
+                assert_ptr_equal(pieces[i], first_round[i]); /* the same memory serves again */
+        }
+        for (int i = 0; i < COUNT; i++)
+            for (size_t k = 0; k < (size_t)i * 37; k++)
+                assert_int_equal(pieces[i][k], i % 255 + 1);
+        zt_arena_reset(&arena);
+    }
+    zt_arena_free(&arena);
+    assert_null(arena.first);
+    zt_arena_free(&arena);
+}
+
+/* A piece larger than any chunk fits, chunks too small for it are passed over and used again,
+ * and sizes beyond all memory are refused. */
+static void arena_large_and_absurd(void **state) {
+    (void)state;
+    zt_arena arena = {0};
+    void *small = zt_arena_push(&arena, 100);
+    assert_non_null(small);
+    char *large = zt_arena_push(&arena, 5 * 1000 * 1000);
+    assert_non_null(large);
+    large[5 * 1000 * 1000 - 1] = 1;
+    zt_arena_reset(&arena);
+    assert_ptr_equal(zt_arena_push(&arena, 5 * 1000 * 1000), large);
+    zt_arena_reset(&arena);
+    assert_ptr_equal(zt_arena_push(&arena, 100), small);
+
+    assert_null(zt_arena_push(&arena, SIZE_MAX));
+    assert_null(zt_arena_push(&arena, SIZE_MAX / 2));
+    assert_null(ZT_PUSH(&arena, double, SIZE_MAX / 8 + 1));
+    assert_non_null(ZT_PUSH(&arena, double, 0));
+    assert_string_equal(zt_arena_push_text(&arena, "keyframe", 3), "key");
+    zt_arena_free(&arena);
+}
+
+/* Distances counted by hand; the longest texts that are compared, and those beyond. */
+static void text_distances(void **state) {
+    (void)state;
+    const struct {
+        const char *a, *b;
+        int distance;
+    } pairs[] = {
+        {"", "", 0},
+        {"", "abc", 3},
+        {"abc", "", 3},
+        {"color", "color", 0},
+        {"colr", "color", 1},
+        {"colour", "color", 1},
+        {"clor", "color", 1},
+        {"cloor", "color", 1},
+        {"ocler", "color", 2},
+        {"center", "centre", 1},
+        {"kitten", "sitting", 3},
+        {"ab", "ba", 1},
+        {"abc", "xyz", 3},
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        assert_int_equal(zt_text_distance(pairs[i].a, pairs[i].b), pairs[i].distance);
+        assert_int_equal(zt_text_distance(pairs[i].b, pairs[i].a), pairs[i].distance);
+    }
+    char as[65], bs[65];
+    memset(as, 'a', 64), memset(bs, 'b', 64);
+    as[64] = bs[64] = '\0';
+    assert_int_equal(zt_text_distance(as, bs), 64);
+    assert_int_equal(zt_text_distance(as, "a"), 64);
+    assert_int_equal(zt_text_distance(as + 1, bs + 1), 63);
+    assert_int_equal(zt_text_distance(as + 1, as + 2), 1);
+}
+
+/* The nearest name is offered where it is near, and nothing where all are far. */
+static void nearest_names(void **state) {
+    (void)state;
+    const struct {
+        const char *wanted, *nearest;
+    } pairs[] = {
+        {"colr", "color"},    {"reflectivty", "reflectivity"},
+        {"center", "center"}, {"xyz", NULL},
+        {"", NULL},           {"q", NULL},
+        {"raduis", "radius"},
+    };
+    const char *const names[] = {"color", "reflectivity", "radius", "center", "x"};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        zt_nearest nearest = zt_nearest_to(pairs[i].wanted);
+        for (int k = 0; k < 5; k++) zt_nearest_try(&nearest, names[k]);
+        if (pairs[i].nearest)
+            assert_string_equal(nearest.best, pairs[i].nearest);
+        else
+            assert_null(nearest.best);
+    }
+}
+
+/* Decimal numbers and nothing else, whatever the locale's decimal point. */
+static void numbers(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        double value;
+    } good[] = {{"0", 0},  {"-1.5", -1.5}, {"+.5", 0.5}, {"1e3", 1000},
+                {"2.", 2}, {"1E-2", 0.01}, {"0.1", 0.1}, {"1e-999", 0}};
+    const char *bad[] = {"",    "-",  ".",  "e5",  "1e",    "1e999", "0x10",  "nan",
+                         "inf", " 1", "1 ", "1,5", "1.2.3", "--1",   "1_000", "infinity"};
+    const char *locales[] = {"C",
+                             "de_DE.UTF-8"}; /* the second one only where it is installed */
+    for (int l = 0; l < 2; l++) {
+        setlocale(LC_ALL, locales[l]);
+        for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+            double value = 77;
+            assert_true(zt_text_number(&value, good[i].text, strchr(good[i].text, '\0')));
+            assert_true(value == good[i].value);
+        }
+        for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+            double value = 77;
+            if (zt_text_number(&value, bad[i], strchr(bad[i], '\0')))
+                fail_msg("\"%s\" was taken for %g", bad[i], value);
+            assert_true(value == 77);
+        }
+    }
+    setlocale(LC_ALL, "C");
+    double value;
+    const char inside[] = "12\0"
+                          "34";
+    assert_false(zt_text_number(&value, inside, inside + 5));
+    assert_true(zt_text_number(&value, "125", "125" + 2) && value == 12);
+    char digits[500];
+    memset(digits, '1', sizeof digits);
+    assert_false(zt_text_number(&value, digits, digits + sizeof digits));
+}
+
+static void text_helpers(void **state) {
+    (void)state;
+    assert_true(zt_text_ends_with("film.MP4", ".mp4", true));
+    assert_false(zt_text_ends_with("film.MP4", ".mp4", false));
+    assert_false(zt_text_ends_with("mp4", ".mp4", true));
+    assert_true(zt_text_equal("a", "a") && !zt_text_equal("a", "A"));
+    char *text = zt_text_print("%s.%04d", "frame", 7);
+    assert_string_equal(text, "frame.0007");
+    free(text);
+}
+
+/* Keeps what was told, formatted. */
+typedef struct notebook {
+    char text[32 * 1024];
+    zt_severity severity;
+    int count;
+} notebook;
+
+static void note(void *user, const zt_message *message) {
+    notebook *book = user;
+    size_t length = zt_message_format(book->text, sizeof book->text, message);
+    assert_int_equal(length, strlen(book->text));
+    book->severity = message->severity;
+    book->count++;
+}
+
+/* Messages look as compilers' do, with the caret below its character: after tabs, after letters
+ * of more than one byte, at the end of the line, far out on a long line. */
+static void messages(void **state) {
+    (void)state;
+    notebook book = {0};
+    zt_listener listener = {note, &book};
+    zt_tell(listener, ZT_WARNING, "%d of %s", 3, "these");
+    assert_string_equal(book.text, "zoetrope: warning: 3 of these");
+    assert_int_equal(book.severity, ZT_WARNING);
+
+    zt_place place = {"lamp.yaml", "      colr: [1, 0.8, 0.6]\nnext", 12, 7, 4};
+    zt_tell_at(listener, ZT_ERROR, &place, "unknown key \"%s\"", "colr");
+    assert_string_equal(book.text, "lamp.yaml:12:7: error: unknown key \"colr\"\n"
+                                   "   12 |       colr: [1, 0.8, 0.6]\n"
+                                   "      |       ^~~~");
+    place = (zt_place){"a.yaml", "\t\xC3\xA9\xE2\x82\xAC: x", 1234567, 3, 9};
+    zt_tell_at(listener, ZT_NOTE, &place, "here");
+    assert_string_equal(book.text, "a.yaml:1234567:3: note: here\n"
+                                   "1234567 | \t\xC3\xA9\xE2\x82\xAC: x\n"
+                                   "        | \t ^~~~");
+    place = (zt_place){"a.yaml", "ab\r\n", 1, 3, 0};
+    zt_tell_at(listener, ZT_ERROR, &place, "more is expected");
+    assert_string_equal(book.text, "a.yaml:1:3: error: more is expected\n"
+                                   "    1 | ab\n"
+                                   "      |   ^");
+    place = (zt_place){"a.yaml", NULL, 4, 2, 1};
+    zt_tell_at(listener, ZT_ERROR, &place, "x");
+    assert_string_equal(book.text, "a.yaml:4:2: error: x");
+    place = (zt_place){"a.yaml", NULL, 0, 0, 0};
+    zt_tell_at(listener, ZT_ERROR, &place, "x");
+    assert_string_equal(book.text, "a.yaml: error: x");
+    zt_tell_at(listener, ZT_ERROR, NULL, "x");
+    assert_string_equal(book.text, "zoetrope: error: x");
+
+    char line[5001];
+    memset(line, '.', 5000);
+    line[5000] = '\0';
+    memcpy(line + 4000, "wrong", 5);
+    place = (zt_place){"a.yaml", line, 1, 4001, 5};
+    zt_tell_at(listener, ZT_ERROR, &place, "x");
+    const char *shown = strstr(book.text, "wrong"), *caret = strstr(book.text, "^~~~~");
+    assert_non_null(shown);
+    assert_non_null(caret);
+    const char *first = strchr(book.text, '\n') + 1, *second = strchr(first, '\n') + 1;
+    assert_int_equal(shown - first, caret - second);
+    assert_in_range(second - first, 60, 200);
+    assert_int_equal(book.count, 8);
+}
+
+/* Nothing is heard without a listener; control characters do not reach a terminal; long
+ * messages are cut at the buffer's end and their whole length is told. */
+static void messages_at_the_edge(void **state) {
+    (void)state;
+    zt_tell((zt_listener){NULL, NULL}, ZT_ERROR, "unheard");
+    notebook book = {0};
+    zt_listener listener = {note, &book};
+    zt_place place = {"a\x1b[2J.yaml", "key:\t\x1b]0;title\x07 \x7f", 1, 1, 1};
+    zt_tell_at(listener, ZT_ERROR, &place, "no \x1b[31m colours");
+    for (const char *c = book.text; *c; c++)
+        assert_true((unsigned char)*c >= 0x20 ? *c != 0x7F : *c == '\n' || *c == '\t');
+
+    char path[4096];
+    memset(path, 'p', sizeof path);
+    path[sizeof path - 1] = '\0';
+    zt_tell(listener, ZT_ERROR, "cannot open %s: no such file", path);
+    assert_non_null(strstr(book.text, ": no such file"));
+
+    zt_message message = {.severity = ZT_ERROR, .text = "0123456789"};
+    char small[8] = "xxxxxxx";
+    assert_int_equal(zt_message_format(small, sizeof small, &message),
+                     strlen("zoetrope: error: ") + 10);
+    assert_string_equal(small, "zoetrop");
+    assert_int_equal(zt_message_format(NULL, 0, &message), strlen("zoetrope: error: ") + 10);
+
+    /* Numbers that make no sense, and bytes that are no UTF-8, do no harm. */
+    message = (zt_message){ZT_ERROR, "x", "f", 1, INT_MAX, INT_MAX, "\x80\xff\xc3"};
+    assert_true(zt_message_format(book.text, sizeof book.text, &message) > 0);
+    message.column = -5;
+    assert_true(zt_message_format(book.text, sizeof book.text, &message) > 0);
+}
+
+static void every_status_has_words(void **state) {
+    (void)state;
+    for (int i = ZT_OK; i <= ZT_ESTOPPED; i++)
+        for (int k = ZT_OK; k < i; k++)
+            assert_string_not_equal(zt_status_text((zt_status)i), zt_status_text((zt_status)k));
+    assert_non_null(zt_status_text((zt_status)1000));
+}
+
+enum { TASKS_MAX = 1000, THREADS_MAX = 8 };
+
+typedef struct tally {
+    atomic_int calls[TASKS_MAX];
+    atomic_int at_work[THREADS_MAX]; /* calls under way with this worker number */
+    atomic_int mistakes, unmasked;
+    int thread_count;
+} tally;
+
+static void count_call(void *user, int task, int worker) {
+    tally *t = user;
+    sigset_t mask;
+    if (worker < 0 || worker >= t->thread_count || task < 0 || task >= TASKS_MAX) {
+        t->mistakes++;
+        return;
+    }
+    if (atomic_fetch_add(&t->at_work[worker], 1) != 0) t->mistakes++;
+    t->calls[task]++;
+    pthread_sigmask(SIG_BLOCK, NULL, &mask);
+    if (worker > 0 && !sigismember(&mask, SIGINT)) t->unmasked++;
+    atomic_fetch_sub(&t->at_work[worker], 1);
+}
+
+/* Each task is called once, over many rounds, no worker number twice at a time; and the pool's
+ * threads leave signals to the program. */
+static void pool_tasks(void **state) {
+    (void)state;
+    const int thread_counts[] = {1, 2, 3, THREADS_MAX}, task_counts[] = {0, 1, 7, TASKS_MAX};
+    for (int i = 0; i < 4; i++) {
+        zt_pool *pool;
+        assert_int_equal(zt_pool_open(&pool, thread_counts[i]), ZT_OK);
+        assert_int_equal(zt_pool_thread_count(pool), thread_counts[i]);
+        tally t = {.thread_count = thread_counts[i]};
+        int expected[TASKS_MAX] = {0};
+        for (int round = 0; round < 200; round++) {
+            int count = task_counts[round % 4];
+            zt_pool_run(pool, count, count_call, &t);
+            for (int k = 0; k < count; k++) expected[k]++;
+        }
+        for (int k = 0; k < TASKS_MAX; k++) assert_int_equal(t.calls[k], expected[k]);
+        assert_int_equal(t.mistakes, 0);
+        assert_int_equal(t.unmasked, 0);
+        zt_pool_close(&pool);
+        assert_null(pool);
+        zt_pool_close(&pool);
+    }
+    zt_pool *pool;
+    assert_int_equal(zt_pool_open(&pool, 0), ZT_EARGUMENT);
+    assert_null(pool);
+    assert_true(zt_pool_core_count() >= 1);
+}
+
+static void wait_for_all(void *user, int task, int worker) {
+    (void)task, (void)worker;
+    atomic_int *arrived = user;
+    atomic_fetch_add(arrived, 1);
+    while (atomic_load(arrived) < 3) thrd_yield();
+}
+
+/* Three tasks that wait for one another end only where three threads take them. */
+static void pool_is_parallel(void **state) {
+    (void)state;
+    zt_pool *pool;
+    assert_int_equal(zt_pool_open(&pool, 3), ZT_OK);
+    atomic_int arrived = 0;
+    zt_pool_run(pool, 3, wait_for_all, &arrived);
+    assert_int_equal(arrived, 3);
+    zt_pool_close(&pool);
+}
+
+typedef struct diary {
+    atomic_int permits, ended;
+} diary;
+
+static void slow_work(void *user) {
+    diary *d = user;
+    while (d->permits <= d->ended) thrd_yield();
+    nanosleep(&(struct timespec){.tv_nsec = 10 * 1000 * 1000}, NULL);
+    d->ended++;
+}
+
+/* An errand runs behind the caller's back, one at a time; waiting and closing see it done. */
+static void errands(void **state) {
+    (void)state;
+    diary d = {0};
+    zt_errand *errand;
+    assert_int_equal(zt_errand_open(&errand, slow_work, &d), ZT_OK);
+    zt_errand_wait(errand); /* nothing is under way: returns at once */
+    zt_errand_send(errand); /* does not wait for the work, which may not go on yet */
+    assert_int_equal(d.ended, 0);
+    d.permits = 3;
+    zt_errand_send(errand);
+    assert_true(d.ended >= 1); /* but for that of the one before */
+    zt_errand_wait(errand);
+    assert_int_equal(d.ended, 2);
+    zt_errand_send(errand);
+    zt_errand_close(&errand);
+    assert_int_equal(d.ended, 3);
+    assert_null(errand);
+    zt_errand_close(&errand);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(vectors_of_any_magnitude),
+        cmocka_unit_test(rotations),
+        cmocka_unit_test(placing),
+        cmocka_unit_test(normals),
+        cmocka_unit_test(random_numbers),
+        cmocka_unit_test(checksums),
+        cmocka_unit_test(arena_pieces),
+        cmocka_unit_test(arena_large_and_absurd),
+        cmocka_unit_test(text_distances),
+        cmocka_unit_test(nearest_names),
+        cmocka_unit_test(numbers),
+        cmocka_unit_test(text_helpers),
+        cmocka_unit_test(messages),
+        cmocka_unit_test(messages_at_the_edge),
+        cmocka_unit_test(every_status_has_words),
+        cmocka_unit_test(pool_tasks),
+        cmocka_unit_test(pool_is_parallel),
+        cmocka_unit_test(errands),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
