@@ -17,6 +17,7 @@ typedef struct zt_track {
     zt_curve curve;
 } zt_track;
 
+/* The struct itself is the reader's calloc; zt_animation_free gives it back. */
 struct zt_animation {
     zt_arena arena; /* owns all below */
     zt_film film;
@@ -26,7 +27,8 @@ struct zt_animation {
 };
 
 /* The scene of the moment `time_s`, in the arena: a copy of the scene at rest with each track's
- * value written into it. Meshes are shared with the animation. ZT_EMEMORY is all that can fail. */
+ * value written into it. Meshes are shared with the animation. ZT_EMEMORY is all that can fail.
+ */
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
                               zt_arena *arena);
 

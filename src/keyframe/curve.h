@@ -1,5 +1,5 @@
-/* A value over time, given by keys. Evaluation is pure: any time, in any order, from any thread,
- * gives the same bits. */
+/* A value over time, given by keys. Evaluation is pure: any time, in any order, from any
+ * thread, gives the same bits. */
 #ifndef ZT_KEYFRAME_CURVE_H
 #define ZT_KEYFRAME_CURVE_H
 

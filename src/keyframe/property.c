@@ -52,9 +52,9 @@ const zt_property zt_properties[] = {
 const int zt_property_count = sizeof zt_properties / sizeof zt_properties[0];
 
 const char *zt_owner_name(zt_owner owner) {
-    static const char *const names[ZT_OWNER_COUNT] = {
-        "camera", "material", "ambient", "point", "plane",
-        "sphere", "triangle", "mesh",    "group"};
+    static const char *const names[ZT_OWNER_COUNT] = {"camera",   "material", "ambient",
+                                                      "point",    "plane",    "sphere",
+                                                      "triangle", "mesh",     "group"};
     return names[owner];
 }
 
@@ -62,12 +62,16 @@ int zt_value_width(zt_value_kind kind) {
     switch (kind) {
     case ZT_VALUE_NUMBER:
     case ZT_VALUE_ANGLE:
-    case ZT_VALUE_SWITCH: return 1;
+    case ZT_VALUE_SWITCH:
+        return 1;
     case ZT_VALUE_VECTOR:
     case ZT_VALUE_SCALE:
-    case ZT_VALUE_COLOR: return 3;
-    case ZT_VALUE_ROTATION: return 4;
-    case ZT_VALUE_VERTICES: return 9;
+    case ZT_VALUE_COLOR:
+        return 3;
+    case ZT_VALUE_ROTATION:
+        return 4;
+    case ZT_VALUE_VERTICES:
+        return 9;
     }
     return 0;
 }
@@ -82,26 +86,34 @@ const zt_property *zt_property_find(zt_owner owner, const char *name) {
 /* The struct in the scene that an owner's properties are offsets into. */
 static char *owner_struct(const zt_scene *scene, zt_owner owner, int32_t index) {
     switch (owner) {
-    case ZT_OWNER_CAMERA: return (char *)&scene->camera;
-    case ZT_OWNER_MATERIAL: return (char *)&scene->materials[index];
+    case ZT_OWNER_CAMERA:
+        return (char *)&scene->camera;
+    case ZT_OWNER_MATERIAL:
+        return (char *)&scene->materials[index];
     case ZT_OWNER_AMBIENT:
-    case ZT_OWNER_POINT: return (char *)&scene->lights[index];
-    default: return (char *)&scene->objects[index];
+    case ZT_OWNER_POINT:
+        return (char *)&scene->lights[index];
+    default:
+        return (char *)&scene->objects[index];
     }
 }
 
 void zt_property_get(double *value, const zt_property *property, const zt_scene *scene,
                      int32_t index) {
     const char *field = owner_struct(scene, property->owner, index) + property->offset;
-    if (property->kind == ZT_VALUE_SWITCH) *value = *(const bool *)field;
-    else memcpy(value, field, (size_t)zt_value_width(property->kind) * sizeof *value);
+    if (property->kind == ZT_VALUE_SWITCH)
+        *value = *(const bool *)field;
+    else
+        memcpy(value, field, (size_t)zt_value_width(property->kind) * sizeof *value);
 }
 
 void zt_property_set(const zt_property *property, zt_scene *scene, int32_t index,
                      const double *value) {
     char *field = owner_struct(scene, property->owner, index) + property->offset;
-    if (property->kind == ZT_VALUE_SWITCH) *(bool *)field = *value >= 0.5;
-    else memcpy(field, value, (size_t)zt_value_width(property->kind) * sizeof *value);
+    if (property->kind == ZT_VALUE_SWITCH)
+        *(bool *)field = *value >= 0.5;
+    else
+        memcpy(field, value, (size_t)zt_value_width(property->kind) * sizeof *value);
 }
 
 void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
@@ -112,7 +124,9 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
                                     .rotation = {1, 0, 0, 0},
                                     .fov = 40 * (3.14159265358979323846 / 180)};
         break;
-    case ZT_OWNER_MATERIAL: scene->materials[index] = (zt_material){{1, 1, 1}, 0}; break;
+    case ZT_OWNER_MATERIAL:
+        scene->materials[index] = (zt_material){{1, 1, 1}, 0};
+        break;
     case ZT_OWNER_AMBIENT:
     case ZT_OWNER_POINT:
         scene->lights[index] =

@@ -1,6 +1,6 @@
-/* The one table of all that can be keyed: which thing owns it, its name, kind, range and its place
- * in the scene. Reading looks names up in it; freezing writes through it. A new animatable
- * property is one row in property.c. */
+/* The one table of all that can be keyed: which thing owns it, its name, kind, range and its
+ * place in the scene. Reading looks names up in it; freezing writes through it. A new
+ * animatable property is one row in property.c. */
 #ifndef ZT_KEYFRAME_PROPERTY_H
 #define ZT_KEYFRAME_PROPERTY_H
 
@@ -40,10 +40,10 @@ typedef struct zt_property {
     zt_owner owner;
     const char *name;
     zt_value_kind kind;
-    const char *unit;   /* as written: "deg"; NULL for none */
-    double min, max;    /* of each channel as written (degrees), both allowed; +-INFINITY */
-    bool required;      /* the owner makes no sense without it */
-    size_t offset;      /* bytes within the owner's struct of the scene */
+    const char *unit; /* as written: "deg"; NULL for none */
+    double min, max;  /* of each channel as written (degrees), both allowed; +-INFINITY */
+    bool required;    /* the owner makes no sense without it */
+    size_t offset;    /* bytes within the owner's struct of the scene */
     const char *meaning;
 } zt_property;
 
