@@ -8,12 +8,16 @@
 #include "base/diag.h"
 #include "scene/mesh.h"
 
-/* Reads ASCII and binary files of both byte orders, any order and type of properties; polygons are
- * triangulated as fans or, where they are not convex, by clipping ears. The arrays go to the arena.
- * Nothing in the file is believed before it is checked: memory stays within a small multiple of
- * the file's size. ZT_EDESCRIPTION after telling, with the place in the PLY file where that helps,
- * for a file that is no legal PLY, has no vertices or no faces; ZT_EFILE when it cannot be read.
- * `place` is where the description names the file, or NULL; told along as a note's place. */
+/* Reads ASCII and binary files of both byte orders, any order and type of properties. Polygons
+ * of the element "face" become triangles as zt_triangulate says, those of fewer than three
+ * corners nothing; the element "tristrips" is read too. No triangle is dropped for having no
+ * area, and no vertex for being used by none, but the bounds are those of the vertices in use.
+ *
+ * The arrays go to the arena. Nothing in the file is believed before it is checked: time grows
+ * with its size alone, and memory stays below some 40 times of that. ZT_EDESCRIPTION after
+ * telling, with the line where there is one, for a file that is no PLY, contradicts itself, or
+ * has no faces; ZT_EFILE when it cannot be read; ZT_EMEMORY. `place` is where the description
+ * names the file, or NULL: it is told along. */
 zt_status zt_ply_read(zt_mesh *mesh, zt_arena *arena, const char *path, const zt_place *place,
                       zt_listener listener);
 
