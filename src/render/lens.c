@@ -8,13 +8,18 @@ zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height) {
     return (zt_lens){vec3_scale(vec3_add(axes.z, half), -1), right, down};
 }
 
-void zt_lens_ray(zt_batch *rays, int i, const zt_lens *lens, double x, double y) {
-    double dx = lens->corner.x + x * lens->right.x + y * lens->down.x;
-    double dy = lens->corner.y + x * lens->right.y + y * lens->down.y;
-    double dz = lens->corner.z + x * lens->right.z + y * lens->down.z;
-    double unit = 1 / sqrt(dx * dx + dy * dy + dz * dz);
-    rays->ox[i] = rays->oy[i] = rays->oz[i] = 0;
-    rays->dx[i] = (real)(dx * unit);
-    rays->dy[i] = (real)(dy * unit);
-    rays->dz[i] = (real)(dz * unit);
+void zt_lens_rays(zt_batch *restrict rays, const zt_lens *lens, const float *restrict x,
+                  const float *restrict y, int count) {
+    const zt_lens l = *lens;
+    for (int i = 0; i < count; i++) {
+        double dx = l.corner.x + (double)x[i] * l.right.x + (double)y[i] * l.down.x;
+        double dy = l.corner.y + (double)x[i] * l.right.y + (double)y[i] * l.down.y;
+        double dz = l.corner.z + (double)x[i] * l.right.z + (double)y[i] * l.down.z;
+        double unit = 1 / sqrt(dx * dx + dy * dy + dz * dz);
+        rays->ox[i] = rays->oy[i] = rays->oz[i] = 0;
+        rays->dx[i] = (real)(dx * unit);
+        rays->dy[i] = (real)(dy * unit);
+        rays->dz[i] = (real)(dz * unit);
+    }
+    rays->count = count;
 }

@@ -14,7 +14,8 @@ typedef struct zt_lens {
 /* A perspective lens whose `fov` spans the height of the picture; pixels are square. */
 zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height);
 
-/* Makes ray number i of the batch the one through (x, y). */
-void zt_lens_ray(zt_batch *rays, int i, const zt_lens *lens, double x, double y);
+/* Makes the batch's rays the ones through the places (x[i], y[i]), `count` of them. */
+void zt_lens_rays(zt_batch *rays, const zt_lens *lens, const float *x, const float *y,
+                  int count);
 
 #endif

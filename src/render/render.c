@@ -13,6 +13,7 @@ static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
 struct zt_render_work {
     zt_classic_trace *trace;
     struct render_thread {
+        float x[ZT_BATCH], y[ZT_BATCH]; /* places in the picture, pixels */
         zt_batch rays;
         zt_radiance light, sum;
         int32_t taken[ZT_BATCH]; /* samples in the sum */
@@ -46,15 +47,17 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
     return work->threads ? ZT_OK : ZT_EMEMORY;
 }
 
-static void make_rays(zt_batch *rays, const zt_render_job *job, tile area, int sample) {
+static void make_rays(struct render_thread *own, const zt_render_job *job, tile area,
+                      int sample) {
     int i = 0;
     for (int y = area.y; y < area.y + area.height; y++)
         for (int x = area.x; x < area.x + area.width; x++, i++) {
             float u, v;
             zt_sample_pixel(&u, &v, x, y, sample, job->samples);
-            zt_lens_ray(rays, i, &job->lens, x + (double)u, y + (double)v);
+            own->x[i] = (float)x + u;
+            own->y[i] = (float)y + v;
         }
-    rays->count = i;
+    zt_lens_rays(&own->rays, &job->lens, own->x, own->y, i);
 }
 
 /* Adds a sample of each pixel to the sums; returns how many were not finite. */
@@ -104,7 +107,7 @@ static void render_tile(void *user, int index, int worker) {
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
             return;
         }
-        make_rays(&own->rays, job, area, sample);
+        make_rays(own, job, area, sample);
         int count = own->rays.count;
         f->work->trace(&own->light, job->tracer, &own->rays, &own->classic);
         left_out += add_samples(own, count);

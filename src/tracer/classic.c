@@ -92,31 +92,40 @@ static void gather_hits(zt_classic_work *w, const zt_batch *rays) {
 
 static real real_max(real a, real b) { return a > b ? a : b; }
 
-/* Normals and corrected positions for points on the kinds of which a zt_surface says all. */
+/* The normal and the corrected position of point k, of a kind of which a zt_surface says all.
+ */
+static inline void find_surface(zt_classic_work *restrict w, int k, const zt_surface *s) {
+    real qx = w->px[k] - s->center.x, qy = w->py[k] - s->center.y, qz = w->pz[k] - s->center.z;
+    real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
+         nz = s->normal.z + s->bend * qz;
+    real unit = 1 / sqrtf(real_dot(nx, ny, nz, nx, ny, nz));
+    nx *= unit;
+    ny *= unit;
+    nz *= unit;
+    real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
+    w->px[k] -= off * nx;
+    w->py[k] -= off * ny;
+    w->pz[k] -= off * nz;
+    w->nx[k] = nx;
+    w->ny[k] = ny;
+    w->nz[k] = nz;
+    w->margin[k] = s->extent;
+    w->color_r[k] = s->color.x;
+    w->color_g[k] = s->color.y;
+    w->color_b[k] = s->color.z;
+    w->reflectivity[k] = s->reflectivity;
+}
+
+/* All points; where they lie on one primitive, as most of a tile's do, nothing is gathered. */
 static void find_surfaces(zt_classic_work *restrict w, const zt_tracer *tracer) {
-    const zt_surface *restrict surfaces = tracer->surfaces;
-    WIDE_LOOP for (int k = 0; k < w->count; k++) {
-        const zt_surface *s = &surfaces[w->primitive[k]];
-        real qx = w->px[k] - s->center.x, qy = w->py[k] - s->center.y,
-             qz = w->pz[k] - s->center.z;
-        real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
-             nz = s->normal.z + s->bend * qz;
-        real unit = 1 / sqrtf(real_dot(nx, ny, nz, nx, ny, nz));
-        nx *= unit;
-        ny *= unit;
-        nz *= unit;
-        real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
-        w->px[k] -= off * nx;
-        w->py[k] -= off * ny;
-        w->pz[k] -= off * nz;
-        w->nx[k] = nx;
-        w->ny[k] = ny;
-        w->nz[k] = nz;
-        w->margin[k] = s->extent;
-        w->color_r[k] = s->color.x;
-        w->color_g[k] = s->color.y;
-        w->color_b[k] = s->color.z;
-        w->reflectivity[k] = s->reflectivity;
+    int32_t first = w->primitive[0], others = 0;
+    WIDE_LOOP for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
+    if (others) {
+        WIDE_LOOP for (int k = 0; k < w->count; k++)
+            find_surface(w, k, &tracer->surfaces[w->primitive[k]]);
+    } else if (w->count > 0) {
+        const zt_surface only = tracer->surfaces[first];
+        WIDE_LOOP for (int k = 0; k < w->count; k++) find_surface(w, k, &only);
     }
 }
 
@@ -211,9 +220,13 @@ static void shine(zt_classic_work *restrict w, const zt_lamp *lamp) {
         real toward = real_dot(w->nx[k], w->ny[k], w->nz[k], vx, vy, vz);
         real fade = toward / sqrtf(square) / square;
         fade = toward > 0 ? fade : 0;
-        w->lamp_r[k] = cut(power.x * fade * w->color_r[k]);
-        w->lamp_g[k] = cut(power.y * fade * w->color_g[k]);
-        w->lamp_b[k] = cut(power.z * fade * w->color_b[k]);
+        real r = cut(power.x * fade * w->color_r[k]);
+        real g = cut(power.y * fade * w->color_g[k]);
+        real b = cut(power.z * fade * w->color_b[k]);
+        w->lamp_r[k] = r;
+        w->lamp_g[k] = g;
+        w->lamp_b[k] = b;
+        w->lit[k] = r + g + b > 0;
     }
 }
 
@@ -223,7 +236,7 @@ static void cast_shadows(zt_classic_work *restrict w, const zt_tracer *tracer,
     int count = 0;
     for (int k = 0; k < w->count; k++) {
         w->list[count] = k;
-        count += (w->lamp_r[k] > 0) | (w->lamp_g[k] > 0) | (w->lamp_b[k] > 0);
+        count += w->lit[k];
     }
     if (count == 0) return;
     zt_batch *restrict shadow = &w->shadow;
