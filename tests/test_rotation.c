@@ -1,0 +1,258 @@
+/* Shows that rotations take the short way at constant speed, that smooth ones have no corner
+ * and no flip, and that both are as exact as doubles can be. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "draw.h"
+#include "keyframe/curve.h"
+#include "keyframe/rotation.h"
+#include "real.h"
+
+static const double pi = 3.14159265358979323846;
+
+static real4 exact(quat q) { return (real4){q.w, q.x, q.y, q.z}; }
+
+/* How far a quaternion's length is from 1, in units in the last place of 1. */
+static double length_error_ulp(quat q) {
+    real4 e = exact(q);
+    return (double)REAL(fabs)(REAL(sqrt)(real4_dot(e, e)) - 1) / 0x1p-52;
+}
+
+/* The rotation angle that takes a to b, at most pi, without loss for small ones. */
+static double turn(quat a, quat b) {
+    quat q = quat_mul(quat_conjugate(a), b);
+    return 2 * atan2(vec3_length((vec3){q.x, q.y, q.z}), fabs(q.w));
+}
+
+/* The quaternion at `angle` from q on the sphere, in a direction drawn. */
+static quat at_distance(draw *d, quat q, double angle) {
+    quat other = draw_rotation(d);
+    quat side = quat_add(other, quat_scale(q, -quat_dot(q, other)));
+    return quat_normalize(
+        quat_add(quat_scale(q, cos(angle)), quat_scale(quat_normalize(side), sin(angle))));
+}
+
+/* Slerp against a reference of higher precision, for separations from 1e-12 to pi - 1e-9. */
+static void slerp_is_exact(void **state) {
+    (void)state;
+    if (!REAL_IS_QUAD) skip();
+    draw d = {1, 0};
+    double worst_angle = 0, worst_length = 0;
+    for (int round = 0; round < 60000; round++) {
+        quat a = draw_rotation(&d);
+        double separation = draw_magnitude(&d, 1e-12, pi / 2);
+        if (round % 2) separation = pi - draw_magnitude(&d, 1e-9, pi / 2);
+        quat b = at_distance(&d, a, separation);
+        double u = round % 7 ? draw_unit(&d) : draw_magnitude(&d, 1e-16, 1);
+        quat q = zt_rotation_slerp(a, b, u);
+        real4 expected = real4_slerp(real4_unit(exact(a)), real4_unit(exact(b)), u);
+        double angle = (double)real4_angle(real4_unit(exact(q)), expected);
+        worst_angle = fmax(worst_angle, angle);
+        worst_length = fmax(worst_length, length_error_ulp(q));
+    }
+    printf("  slerp: worst angle error %.2g, worst length error %.2g ulp\n", worst_angle,
+           worst_length);
+    assert_true(worst_angle <= 1e-12);
+    assert_true(worst_length <= 4);
+}
+
+static zt_curve make(zt_arena *arena, zt_curve_kind kind, int count, const double *times,
+                     const quat *keys) {
+    zt_curve curve;
+    assert_int_equal(zt_curve_make(&curve, arena, kind, ZT_VALUE_ROTATION, count, times,
+                                   (const double *)keys),
+                     ZT_OK);
+    return curve;
+}
+
+static quat eval(const zt_curve *curve, double time_s) {
+    quat q;
+    zt_curve_eval((double *)&q, curve, time_s);
+    return q;
+}
+
+/* Between any two neighbours the way is the short one, whatever signs the keys were given with,
+ * and each key is met exactly, but for its sign. */
+static void the_short_way(void **state) {
+    (void)state;
+    draw d = {2, 0};
+    zt_arena arena = {0};
+    enum { COUNT = 20 };
+    for (int round = 0; round < 3000; round++) {
+        zt_arena_reset(&arena);
+        double times[COUNT];
+        quat keys[COUNT];
+        for (int k = 0; k < COUNT; k++) {
+            times[k] = k + draw_unit(&d) / 2;
+            keys[k] = quat_scale(draw_rotation(&d), draw_below(&d, 2) ? 1 : -1);
+        }
+        zt_curve curve = make(&arena, ZT_CURVE_LINEAR, COUNT, times, keys);
+        for (int k = 0; k < COUNT; k++) {
+            quat q = eval(&curve, times[k]);
+            bool same = memcmp(&q, &keys[k], sizeof q) == 0;
+            q = quat_scale(q, -1);
+            assert_true(same || memcmp(&q, &keys[k], sizeof q) == 0);
+        }
+        for (int k = 0; k + 1 < COUNT; k++) {
+            double whole = turn(keys[k], keys[k + 1]);
+            quat middle = eval(&curve, (times[k] + times[k + 1]) / 2);
+            assert_true(fabs(turn(keys[k], middle) - whole / 2) < 1e-12);
+            assert_true(fabs(turn(middle, keys[k + 1]) - whole / 2) < 1e-12);
+        }
+    }
+    zt_arena_free(&arena);
+}
+
+/* Half turns go the way that their angles say: 0, 180, 360 ... degrees go round and round, and
+ * 0, -180 goes backwards. */
+static void half_turns(void **state) {
+    (void)state;
+    zt_arena arena = {0};
+    for (int direction = -1; direction <= 1; direction += 2)
+        for (int axis = 0; axis < 3; axis++) {
+            double times[9];
+            quat keys[9];
+            for (int k = 0; k < 9; k++) {
+                double angle = direction * k * pi;
+                times[k] = k;
+                keys[k] = quat_euler_xyz((vec3){axis == 0 ? angle : 0, axis == 1 ? angle : 0,
+                                                axis == 2 ? angle : 0});
+            }
+            zt_curve curve = make(&arena, ZT_CURVE_LINEAR, 9, times, keys);
+            for (double t = 0.5; t < 8; t++) {
+                quat expected = quat_euler_xyz((vec3){axis == 0 ? direction * t * pi : 0,
+                                                      axis == 1 ? direction * t * pi : 0,
+                                                      axis == 2 ? direction * t * pi : 0});
+                assert_true(turn(eval(&curve, t), expected) < 1e-12);
+            }
+        }
+    zt_arena_free(&arena);
+}
+
+/* Smooth turns around one axis are the smooth curve of their angle, which never overshoots. */
+static void one_axis_is_a_smooth_angle(void **state) {
+    (void)state;
+    draw d = {3, 0};
+    zt_arena arena = {0};
+    double worst = 0;
+    for (int round = 0; round < 3000; round++) {
+        zt_arena_reset(&arena);
+        double times[8], angles[8], angle = 0, time = 0;
+        quat keys[8], first = draw_rotation(&d);
+        vec3 axis = vec3_normalize((vec3){first.x, first.y, first.z});
+        for (int k = 0; k < 8; k++) {
+            times[k] = time += draw_magnitude(&d, 1e-2, 1e2);
+            angles[k] = angle += draw_between(&d, -3, 3);
+            keys[k] = quat_mul(first, quat_axis_angle(axis, angle));
+        }
+        zt_curve numbers;
+        assert_int_equal(
+            zt_curve_make(&numbers, &arena, ZT_CURVE_SMOOTH, ZT_VALUE_ANGLE, 8, times, angles),
+            ZT_OK);
+        zt_curve curve = make(&arena, ZT_CURVE_SMOOTH, 8, times, keys);
+        for (int i = 0; i < 20; i++) {
+            double t = draw_between(&d, times[0], times[7]);
+            zt_curve_eval(&angle, &numbers, t);
+            quat expected = quat_mul(first, quat_axis_angle(axis, angle));
+            worst = fmax(worst, turn(eval(&curve, t), expected));
+        }
+    }
+    printf("  smooth rotation around one axis: worst error %.2g\n", worst);
+    assert_true(worst < 1e-13);
+    zt_arena_free(&arena);
+}
+
+/* The angular velocity between two times, in the frame of the first. */
+static vec3 velocity(const zt_curve *curve, double from, double to) {
+    quat q = quat_mul(quat_conjugate(eval(curve, from)), eval(curve, to));
+    double scale = (q.w < 0 ? -2 : 2) / (to - from);
+    return vec3_scale((vec3){q.x, q.y, q.z}, scale);
+}
+
+/* Through keys turned in any way, at uneven times: unit length, no jump anywhere, no corner at
+ * a key, and no detour beyond what the keys are apart. */
+static void smooth_has_no_corner_and_no_flip(void **state) {
+    (void)state;
+    draw d = {4, 0};
+    zt_arena arena = {0};
+    double corner = 0, step = 0, length = 0;
+    for (int round = 0; round < 4000; round++) {
+        zt_arena_reset(&arena);
+        double times[6], time = 0;
+        quat keys[6];
+        for (int k = 0; k < 6; k++) {
+            times[k] = time += draw_magnitude(&d, 0.1, 10);
+            keys[k] = draw_rotation(&d);
+            if (k && draw_below(&d, 4) == 0)
+                keys[k] = at_distance(&d, keys[k - 1], draw_below(&d, 2) ? pi / 2 : 1e-9);
+        }
+        zt_curve curve = make(&arena, ZT_CURVE_SMOOTH, 6, times, keys);
+        const double h = 1e-6;
+        for (int k = 1; k < 5; k++) {
+            vec3 before = velocity(&curve, times[k] - h, times[k]);
+            vec3 after = velocity(&curve, times[k], times[k] + h);
+            corner = fmax(corner, vec3_length(vec3_sub(after, before)));
+        }
+        for (int k = 0; k < 5; k++) {
+            quat last = eval(&curve, times[k]);
+            for (int i = 1; i <= 100; i++) {
+                quat q = eval(&curve, times[k] + (times[k + 1] - times[k]) * i / 100);
+                step = fmax(step, turn(last, q));
+                length = fmax(length, length_error_ulp(q));
+                last = q;
+            }
+        }
+    }
+    printf("  smooth rotation: worst corner %.2g rad/s, worst hundredth of a step %.2g rad, "
+           "worst length error %.2g ulp\n",
+           corner, step, length);
+    assert_true(corner < 0.02); /* accelerations reach some 1e3, times h, twice */
+    assert_true(step < 0.15);   /* at twice to three times the mean speed of a half turn */
+    assert_true(length <= 4);
+    zt_arena_free(&arena);
+}
+
+/* Quaternions that are none, and times that are hardly apart, still give rotations. */
+static void odd_keys(void **state) {
+    (void)state;
+    draw d = {5, 0};
+    zt_arena arena = {0};
+    for (int round = 0; round < 50000; round++) {
+        zt_arena_reset(&arena);
+        double times[5], time = 0;
+        quat keys[5];
+        for (int k = 0; k < 5; k++) {
+            double spacing = draw_magnitude(&d, 1e-300, 1e300);
+            times[k] = time = fmax(time + spacing, nextafter(time, INFINITY));
+            keys[k] = (quat){draw_nasty(&d), draw_nasty(&d), draw_nasty(&d), draw_nasty(&d)};
+        }
+        for (zt_curve_kind kind = 0; kind < ZT_CURVE_COUNT; kind++) {
+            zt_curve curve = make(&arena, kind, 5, times, keys);
+            for (int i = 0; i < 20; i++) {
+                int k = draw_below(&d, 4);
+                quat q = eval(&curve, times[k] + draw_unit(&d) * (times[k + 1] - times[k]));
+                if (!(length_error_ulp(q) <= 4))
+                    fail_msg("(%g %g %g %g) is no rotation", q.w, q.x, q.y, q.z);
+            }
+        }
+    }
+    zt_arena_free(&arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slerp_is_exact),
+        cmocka_unit_test(the_short_way),
+        cmocka_unit_test(half_turns),
+        cmocka_unit_test(one_axis_is_a_smooth_angle),
+        cmocka_unit_test(smooth_has_no_corner_and_no_flip),
+        cmocka_unit_test(odd_keys),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
