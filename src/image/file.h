@@ -11,17 +11,20 @@
 extern "C" {
 #endif
 
-/* Whether the ending of `path` names a format that can be written. */
-bool zt_image_file_accepts(const char *path);
+/* The endings of the formats that can be written, each with its dot; NULL after the last. */
+extern const char *const zt_image_file_endings[];
 
-/* Writes `image` to `path` in the format that the ending of `name` asks for (the two differ while
- * a file is written aside): 8 bits developed by the view for PNG, JPEG and 8-bit formats, half
- * floats of linear light for EXR, 16 bits developed for TIFF. ZT_EFILE after telling why. */
+/* Writes R, G and B of `image` to `path` in the format that the ending of `name` asks for (the
+ * two differ while a file is written aside): 8 bits developed by the view for PNG and JPEG, 16
+ * bits developed for TIFF, half floats of linear light for EXR (what a half float cannot hold
+ * becomes its largest number). ZT_EFILE after telling why. */
 zt_status zt_image_file_write(const zt_image *image, zt_view view, const char *path,
                               const char *name, zt_listener listener);
 
 /* Reads any image file into floats as they are stored (integers to 0..1, no transfer function
- * undone). The caller frees the image. */
+ * undone, grey as R = G = B, A = 1 where the file has none). The caller frees the image.
+ * ZT_EFILE after telling why; pictures of more than 2^28 pixels are refused, whatever the file
+ * claims. */
 zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener listener);
 
 #ifdef __cplusplus

@@ -1,3 +1,4 @@
+/* Pixels in memory. */
 #include <zoetrope/image.h>
 
 #include <stdlib.h>

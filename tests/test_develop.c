@@ -1,0 +1,156 @@
+/* Developing: the fast way gives what the definition gives, for every float that could tell. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "image/develop.h"
+
+enum { BATCH = 4096 };
+
+static float from_bits(uint32_t bits) {
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* The sRGB curve written once more, in long double and from the standard's text. */
+static long double reference(float linear, zt_view view) {
+    if (isnan(linear) || linear <= 0) return 0;
+    if (linear >= 1) return 1;
+    if (view == ZT_VIEW_RAW) return linear;
+    return linear <= 0.0031308L ? 12.92L * linear : 1.055L * powl(linear, 1 / 2.4L) - 0.055L;
+}
+
+/* Develops `count` (a multiple of 3) values through 1-row images and compares each with the
+ * nearest of 256. */
+static void compare(const float *values, int count, zt_view view) {
+    static float pixels[BATCH / 3 * 4];
+    static uint8_t bytes[BATCH];
+    zt_image image = {.width = count / 3, .height = 1, .pixels = pixels};
+    for (int i = 0; i < count; i++) pixels[i / 3 * 4 + i % 3] = values[i];
+    zt_develop_rgb8(bytes, 0, &image, view, 0, 1);
+    for (int i = 0; i < count; i++) {
+        int expected = (int)floorl(255 * reference(values[i], view) + 0.5L);
+        if (bytes[i] != expected)
+            fail_msg("%a in view %d: %d instead of %d", values[i], view, bytes[i], expected);
+    }
+}
+
+/* Around the step from each code to the next, every float for 2000 to both sides is right. */
+static void steps_are_exact(void **state) {
+    (void)state;
+    float values[3999];
+    for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++)
+        for (int code = 1; code <= 255; code++) {
+            uint32_t low = 0, high = 0x3f800000; /* 0 and 1 */
+            while (high - low > 1) {
+                uint32_t middle = (low + high) / 2;
+                if (255 * reference(from_bits(middle), view) + 0.5L >= code)
+                    high = middle;
+                else
+                    low = middle;
+            }
+            for (uint32_t i = 0; i < 3999; i++) values[i] = from_bits(high - 2000 + i);
+            compare(values, 3999, view);
+        }
+}
+
+/* Any bits whatever: numbers above 1 and below 0, infinities, what is no number, the smallest.
+ */
+static void any_float_is_exact(void **state) {
+    (void)state;
+    float values[3999];
+    uint64_t random = 88172645463325252u;
+    for (int round = 0; round < 400; round++) {
+        for (int i = 0; i < 3999; i++) {
+            random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+            uint32_t bits = (uint32_t)(random >> 20);
+            /* Every other one from 2^-16 .. 2, where the codes are. */
+            values[i] = from_bits(i % 2 ? 0x37800000 + bits % 0x08800000 : bits);
+        }
+        compare(values, 3999, round % 2 ? ZT_VIEW_RAW : ZT_VIEW_SRGB);
+    }
+    const float special[] = {0,      -0.0f,    1,         INFINITY, -INFINITY,
+                             NAN,    -NAN,     1e-45f,    -1e-45f,  3e38f,
+                             -3e38f, 0x1p-13f, 0.999999f, 1.00001f, 0.00012f};
+    compare(special, 15, ZT_VIEW_RAW);
+    compare(special, 15, ZT_VIEW_SRGB);
+}
+
+static void assert_near(double found, double expected, double tolerance) {
+    if (!(fabs(found - expected) <= tolerance)) fail_msg("%.17g is not %.17g", found, expected);
+}
+
+/* The definition has the values that the sRGB standard and every table of it give. */
+static void definition_is_srgb(void **state) {
+    (void)state;
+    assert_near(zt_develop_value(0.5, ZT_VIEW_SRGB), 0.7353569830524495, 1e-12);
+    assert_near(zt_develop_value(0.18, ZT_VIEW_SRGB), 0.4613561295004415, 1e-12);
+    assert_near(zt_develop_value(0.002, ZT_VIEW_SRGB), 0.02584, 1e-12);
+    assert_near(zt_develop_value(0.25, ZT_VIEW_RAW), 0.25, 0);
+    assert_near(zt_develop_value(7, ZT_VIEW_RAW), 1, 0);
+    assert_near(zt_develop_value(-7, ZT_VIEW_SRGB), 0, 0);
+    assert_near(zt_develop_value((double)NAN, ZT_VIEW_SRGB), 0, 0);
+    for (int i = 0; i <= 1000; i++) {
+        double back = zt_develop_value(zt_srgb_to_linear(i / 1000.0), ZT_VIEW_SRGB);
+        assert_near(back, i / 1000.0, 1e-6);
+    }
+}
+
+/* Only the rows asked for are read and written, and the gap between rows stays as it was. */
+static void rows_and_stride(void **state) {
+    (void)state;
+    enum { STRIDE = 11 };
+    zt_image *image;
+    assert_int_equal(zt_image_create(&image, 2, 5), ZT_OK);
+    for (int y = 0; y < 5; y++)
+        for (int i = 0; i < 8; i++) image->pixels[8 * y + i] = (float)(10 * y + i) / 255;
+    uint8_t bytes[3 * STRIDE];
+    memset(bytes, 0xee, sizeof bytes);
+    zt_develop_rgb8(bytes, STRIDE, image, ZT_VIEW_RAW, 2, 4);
+    for (int y = 0; y < 3; y++)
+        for (int i = 0; i < STRIDE; i++) {
+            bool inside = y < 2 && i < 6;
+            assert_int_equal(bytes[y * STRIDE + i],
+                             inside ? 10 * (y + 2) + i + (i >= 3 ? 1 : 0) : 0xee);
+        }
+    zt_image_free(&image);
+}
+
+/* 16 bits: the nearest of 65536 for values spread over the range and beyond it. */
+static void sixteen_bits_are_exact(void **state) {
+    (void)state;
+    enum { WIDTH = 40000 };
+    zt_image *image;
+    assert_int_equal(zt_image_create(&image, WIDTH, 1), ZT_OK);
+    uint16_t *values = malloc(WIDTH * 3 * sizeof *values);
+    assert_non_null(values);
+    for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
+        for (int i = 0; i < WIDTH * 4; i++)
+            image->pixels[i] = (float)(i - 1000) / (float)(WIDTH * 4 - 2000);
+        image->pixels[4] = NAN;
+        zt_develop_rgb16(values, WIDTH * 6, image, view, 0, 1);
+        for (int i = 0; i < WIDTH * 3; i++) {
+            float linear = image->pixels[i / 3 * 4 + i % 3];
+            assert_int_equal(values[i], (int)floorl(65535 * reference(linear, view) + 0.5L));
+        }
+    }
+    free(values);
+    zt_image_free(&image);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_are_exact),        cmocka_unit_test(any_float_is_exact),
+        cmocka_unit_test(definition_is_srgb),     cmocka_unit_test(rows_and_stride),
+        cmocka_unit_test(sixteen_bits_are_exact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
