@@ -1,0 +1,90 @@
+#include "description/materials.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NEAREST_TRIED_MAX = 1000 };
+
+static zt_status read_material(int32_t *index, zt_reading *reading, const zt_node *node,
+                               const char *name) {
+    const char *names[ZT_FIELD_NAMES_MAX];
+    int name_count = zt_motion_names(names, ZT_OWNER_MATERIAL);
+    zt_fields fields;
+    *index = -1;
+    if (!zt_fields_open(&fields, &reading->mistakes, node, name, names, name_count))
+        return ZT_OK;
+    *index = reading->animation->rest.material_count++;
+    return zt_motion_read(reading, &fields, ZT_OWNER_MATERIAL, *index, name, &node->place);
+}
+
+static int by_name(const void *pa, const void *pb) {
+    return strcmp(((const zt_material_name *)pa)->name, ((const zt_material_name *)pb)->name);
+}
+
+zt_status zt_materials_open(zt_materials *materials, zt_reading *reading, const zt_node *node,
+                            int64_t object_count) {
+    *materials = (zt_materials){.reading = reading, .white = -1};
+    if (node && node->kind != ZT_NODE_MAPPING) {
+        if (!zt_node_empty(node))
+            zt_expected(&reading->mistakes, node, "materials",
+                        "a mapping of names to materials");
+        node = NULL;
+    }
+    int32_t count = node ? node->count : 0;
+    zt_scene *rest = &reading->animation->rest;
+    rest->materials = ZT_PUSH(&reading->animation->arena, zt_material,
+                              (size_t)count + (size_t)object_count + 1);
+    materials->names = ZT_PUSH(reading->temporary, zt_material_name, (size_t)count);
+    if (!rest->materials || !materials->names) return ZT_EMEMORY;
+    for (int32_t i = 0; i < count; i++) {
+        zt_material_name *name = &materials->names[i];
+        name->name = zt_node_key(node, i)->text;
+        ZT_TRY(read_material(&name->index, reading, zt_node_value(node, i), name->name));
+    }
+    qsort(materials->names, (size_t)count, sizeof *materials->names, by_name);
+    materials->name_count = count;
+    return ZT_OK;
+}
+
+static void tell_unknown(const zt_materials *materials, const zt_node *node) {
+    zt_mistakes *mistakes = &materials->reading->mistakes;
+    zt_nearest nearest = zt_nearest_to(node->text);
+    for (int32_t i = 0; i < materials->name_count && i < NEAREST_TRIED_MAX; i++) {
+        if (zt_mistakes_full(mistakes)) break;
+        zt_nearest_try(&nearest, materials->names[i].name);
+    }
+    zt_mistake(mistakes, &node->place, "no material is named \"%s\"%s",
+               zt_show(node->text).text, zt_suggest(&nearest).text);
+}
+
+zt_status zt_materials_find(int32_t *index, zt_materials *materials, const zt_node *node) {
+    zt_reading *reading = materials->reading;
+    zt_scene *rest = &reading->animation->rest;
+    *index = -1;
+    if (!node) {
+        if (materials->white < 0) {
+            materials->white = rest->material_count++;
+            zt_property_rest(rest, ZT_OWNER_MATERIAL, materials->white);
+        }
+        *index = materials->white;
+        return ZT_OK;
+    }
+    if (node->kind == ZT_NODE_MAPPING) {
+        char name[32];
+        snprintf(name, sizeof name, "material %d", (int)rest->material_count + 1);
+        return read_material(index, reading, node, name);
+    }
+    if (node->kind != ZT_NODE_TEXT || zt_node_empty(node)) {
+        zt_expected(&reading->mistakes, node, "material", "a material's name or a mapping");
+        return ZT_OK;
+    }
+    zt_material_name wanted = {.name = node->text};
+    const zt_material_name *found = bsearch(
+        &wanted, materials->names, (size_t)materials->name_count, sizeof wanted, by_name);
+    if (found)
+        *index = found->index;
+    else
+        tell_unknown(materials, node);
+    return ZT_OK;
+}
