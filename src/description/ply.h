@@ -14,7 +14,7 @@
  * area, and no vertex for being used by none, but the bounds are those of the vertices in use.
  *
  * The arrays go to the arena. Nothing in the file is believed before it is checked: time grows
- * with its size alone, and memory stays below some 40 times of that. ZT_EDESCRIPTION after
+ * with its size alone, and memory stays below 20 times of that and 4 MB. ZT_EDESCRIPTION after
  * telling, with the line where there is one, for a file that is no PLY, contradicts itself, or
  * has no faces; ZT_EFILE when it cannot be read; ZT_EMEMORY. `place` is where the description
  * names the file, or NULL: it is told along. */

@@ -10,7 +10,7 @@
 enum {
     CORNERS_MAX = 1 << 16, /* a polygon of more would take too long in any case */
     SHARE = 64,            /* comparisons for each corner that do not strain our patience */
-    PATIENCE = 1 << 27     /* about half a second */
+    PATIENCE = 1 << 25     /* about a third of a second */
 };
 
 /* A corner of what is left of the polygon. */
