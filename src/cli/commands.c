@@ -1,0 +1,119 @@
+#include "cli/commands.h"
+
+#include <assert.h>
+#include <stdbool.h>
+#include <string.h>
+
+#define BIT(option) (1U << ZT_OPTION_##option)
+#define ANYWHERE    (BIT(QUIET) | BIT(HELP) | BIT(VERSION))
+#define ONE_FRAME   (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS))
+
+const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
+    [ZT_COMMAND_RENDER] = {"render", "FILE", 1, "All frames become a movie, or numbered images",
+                           "output/NAME.mp4", ONE_FRAME | BIT(FRAMES)},
+    [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, "Frame N alone becomes an image",
+                          "output/NAME.NNNN.png", ONE_FRAME},
+    [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1,
+                            "A quick movie: a quarter of the size, one sample a pixel",
+                            "output/NAME.preview.mp4", ONE_FRAME | BIT(FRAMES)},
+    [ZT_COMMAND_CHECK] = {"check", "FILE", 1,
+                          "Tells the mistakes in FILE, or what the film holds", NULL, ANYWHERE},
+};
+
+const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
+    [ZT_OPTION_OUTPUT] = {"output", 'o', "TARGET", "where the images go"},
+    [ZT_OPTION_FRAMES] = {"frames", 0, "10-40",
+                          "only these frames, or one (7); the first is 0"},
+    [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
+    [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
+    [ZT_OPTION_THREADS] = {"threads", 0, "N",
+                           "instead of one a core; the images stay the same"},
+    [ZT_OPTION_QUIET] = {"quiet", 'q', NULL, "print nothing but errors"},
+    [ZT_OPTION_HELP] = {"help", 'h', NULL, "print this"},
+    [ZT_OPTION_VERSION] = {"version", 0, NULL, "print the version"},
+};
+
+zt_command zt_command_find(const char *name) {
+    int i = 0;
+    while (i < ZT_COMMAND_COUNT && strcmp(name, zt_commands[i].name) != 0) i++;
+    return (zt_command)i;
+}
+
+/* How many letters must be put in, left out or changed (Levenshtein 1966). */
+static size_t distance(const char *wanted, const char *known) {
+    enum { KNOWN_MAX = 15 };
+    size_t row[KNOWN_MAX + 1], length = strlen(known);
+    assert(length <= KNOWN_MAX);
+    for (size_t j = 0; j <= length; j++) row[j] = j;
+    for (; *wanted; wanted++) {
+        size_t corner = row[0]++;
+        for (size_t j = 1; j <= length; j++) {
+            size_t best = corner + (*wanted != known[j - 1]);
+            corner = row[j];
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            if (corner + 1 < best) best = corner + 1;
+            row[j] = best;
+        }
+    }
+    return row[length];
+}
+
+static bool is_near(const char *wanted, const char *known) {
+    if (!*wanted) return false;
+    return strncmp(wanted, known, strlen(wanted)) == 0 ||
+           distance(wanted, known) <= strlen(known) / 3;
+}
+
+zt_command zt_command_near(const char *name) {
+    int i = 0;
+    while (i < ZT_COMMAND_COUNT && !is_near(name, zt_commands[i].name)) i++;
+    return (zt_command)i;
+}
+
+zt_option zt_option_near(const char *name) {
+    int i = 0;
+    while (i < ZT_OPTION_COUNT && !is_near(name, zt_options_known[i].name)) i++;
+    return (zt_option)i;
+}
+
+static void print_option(FILE *stream, const zt_option_row *row) {
+    char name[32];
+    snprintf(name, sizeof name, "--%s %s", row->name, row->example ? row->example : "");
+    if (row->letter)
+        fprintf(stream, "  -%c, ", row->letter);
+    else
+        fputs("      ", stream);
+    fprintf(stream, "%-16s  %s\n", name, row->help);
+}
+
+static void print_summary(FILE *stream) {
+    fputs("Usage: zoetrope COMMAND FILE [OPTION]...\n\n"
+          "Makes a film of FILE, the description of an animation.\n\nCommands:\n",
+          stream);
+    for (int i = 0; i < ZT_COMMAND_COUNT; i++)
+        fprintf(stream, "  %-7s %-7s  %s\n", zt_commands[i].name, zt_commands[i].words,
+                zt_commands[i].help);
+}
+
+void zt_command_help(FILE *stream, zt_command command) {
+    const zt_command_row *row = command < ZT_COMMAND_COUNT ? &zt_commands[command] : NULL;
+    if (row)
+        fprintf(stream, "Usage: zoetrope %s %s [OPTION]...\n\n%s.\n", row->name, row->words,
+                row->help);
+    else
+        print_summary(stream);
+    fputs("\nOptions:\n", stream);
+    for (int i = 0; i < ZT_OPTION_COUNT; i++)
+        if (!row || row->takes & 1U << i) print_option(stream, &zt_options_known[i]);
+    if (!row)
+        fputs("\n\"zoetrope COMMAND --help\" tells more of a command.\n", stream);
+    else if (row->target)
+        fprintf(
+            stream,
+            "\nTARGET is %s where none is given, NAME being that of FILE. It may be\n"
+            "  film.mp4         a movie, H.264\n"
+            "  frames.####.png  numbered images; also frames.%%04d.png; also .exr .tif .jpg\n"
+            "  image.png        one image\n"
+            "  film.hash        a line with a checksum for each frame\n",
+            row->target);
+}

@@ -1,0 +1,58 @@
+/* What the program offers: one table of commands, one of options. Reading, refusing and help go
+ * by them. */
+#ifndef ZT_CLI_COMMANDS_H
+#define ZT_CLI_COMMANDS_H
+
+#include <stdio.h>
+
+typedef enum zt_command {
+    ZT_COMMAND_RENDER,
+    ZT_COMMAND_FRAME,
+    ZT_COMMAND_PREVIEW,
+    ZT_COMMAND_CHECK,
+    ZT_COMMAND_COUNT /* none of them */
+} zt_command;
+
+typedef struct zt_command_row {
+    const char *name;
+    const char *words; /* that it needs: "FILE N" */
+    int word_count;
+    const char *help;
+    const char *target; /* where its images go by default, as help shows it; NULL: no images */
+    unsigned takes;     /* a bit for each option */
+} zt_command_row;
+
+extern const zt_command_row zt_commands[ZT_COMMAND_COUNT];
+
+typedef enum zt_option {
+    ZT_OPTION_OUTPUT,
+    ZT_OPTION_FRAMES,
+    ZT_OPTION_SIZE,
+    ZT_OPTION_SAMPLES,
+    ZT_OPTION_THREADS,
+    ZT_OPTION_QUIET,
+    ZT_OPTION_HELP,
+    ZT_OPTION_VERSION,
+    ZT_OPTION_COUNT /* none of them */
+} zt_option;
+
+typedef struct zt_option_row {
+    const char *name;
+    char letter;         /* '\0': none */
+    const char *example; /* of its value; NULL: takes none */
+    const char *help;
+} zt_option_row;
+
+extern const zt_option_row zt_options_known[ZT_OPTION_COUNT];
+
+/* The command of that name, or none. */
+zt_command zt_command_find(const char *name);
+
+/* The first command or option whose name begins so or is a few letters off, or none. */
+zt_command zt_command_near(const char *name);
+zt_option zt_option_near(const char *name);
+
+/* Prints help for a command, or for the whole program where it is none. */
+void zt_command_help(FILE *stream, zt_command command);
+
+#endif

@@ -1,0 +1,166 @@
+/* The program: read a description, open a renderer and an output, render the sequence, close.
+ */
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <zoetrope/zoetrope.h>
+
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "cli/report.h"
+
+enum { EXIT_MISTAKES = 1, EXIT_USAGE = 2, EXIT_REFUSED = 3, EXIT_INTERRUPTED = 130 };
+
+/* Set by a signal; read by the rendering threads. */
+static atomic_bool stop_asked;
+
+static void ask_to_stop(int signal_number) {
+    (void)signal_number;
+    atomic_store(&stop_asked, true);
+}
+
+static bool stopped(void *user) {
+    (void)user;
+    return atomic_load_explicit(&stop_asked, memory_order_relaxed);
+}
+
+/* The first interrupt stops the sequence, a second one ends the program. One that is ignored,
+ * as shells have it for work in the background, stays so. */
+static void listen_for_interrupts(void) {
+    const int signals[] = {SIGINT, SIGTERM};
+    struct sigaction action = {.sa_handler = ask_to_stop,
+                               .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    for (int i = 0; i < 2; i++) {
+        struct sigaction before;
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(signals[i], &action, NULL);
+    }
+}
+
+/* A standard stream that is closed stays unusable, but no file that is opened later takes its
+ * number and with it our messages. */
+static void hold_standard_streams(void) {
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && errno == EBADF)
+            (void)open("/dev/null", fd ? O_RDONLY : O_WRONLY);
+    signal(SIGPIPE, SIG_IGN); /* a film is finished even when nobody reads of its progress */
+}
+
+/* A quarter of a side, to the nearest even number, which movies need. */
+static int preview_side(int side) { return side < 8 ? 2 : (side + 4) / 8 * 2; }
+
+static zt_render_settings choose_settings(const zt_options *options, const zt_film *film) {
+    zt_render_settings settings = options->settings;
+    if (options->command != ZT_COMMAND_PREVIEW) return settings;
+    if (settings.width == 0) {
+        settings.width = preview_side(film->width);
+        settings.height = preview_side(film->height);
+    }
+    if (settings.samples == 0) settings.samples = 1;
+    return settings;
+}
+
+static void show_progress(void *user, int64_t done_count, int64_t total_count, int64_t frame) {
+    (void)total_count;
+    zt_progress_frame(user, done_count, frame);
+}
+
+static void say_interrupted(const zt_progress *progress, const char *target) {
+    if (progress->done_count == 0)
+        zt_report_say(progress->report, ZT_WARNING,
+                      "interrupted before the first frame was done");
+    else
+        zt_report_say(progress->report, ZT_WARNING,
+                      "interrupted: %s has the first %" PRId64 " of %" PRId64 " frames", target,
+                      progress->done_count, progress->total_count);
+}
+
+/* Opens the output, renders the frames into it, and closes it whatever happened. */
+static zt_status write_frames(zt_renderer *renderer, int64_t first, int64_t last,
+                              const char *target, zt_report *report) {
+    zt_output_format format = zt_renderer_format(renderer);
+    zt_output *output = NULL;
+    listen_for_interrupts();
+    zt_status status = zt_output_open(&output, target, &format, zt_report_listener(report));
+    if (status != ZT_OK) return status;
+    zt_progress progress = zt_progress_begin(report, last - first + 1);
+    zt_watcher watcher = {show_progress, stopped, &progress};
+    status = zt_renderer_sequence(renderer, first, last, output, &watcher);
+    zt_status closed = zt_output_close(&output);
+    if (closed != ZT_OK) return closed;
+    if (status == ZT_OK) zt_progress_end(&progress, target);
+    if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
+    return status;
+}
+
+static zt_status render(const zt_options *options, const zt_animation *animation,
+                        zt_report *report) {
+    const zt_film *film = zt_animation_film(animation);
+    int64_t first = options->all_frames ? 0 : options->first;
+    int64_t last = options->all_frames ? film->frame_count - 1 : options->last;
+    if (last >= film->frame_count) {
+        zt_report_say(report, ZT_ERROR,
+                      "there is no frame %" PRId64 ": the film has frames 0 to %" PRId64, last,
+                      film->frame_count - 1);
+        return ZT_EARGUMENT;
+    }
+    char *target = zt_options_target(options);
+    if (!target) return ZT_EMEMORY;
+    zt_render_settings settings = choose_settings(options, film);
+    zt_renderer *renderer = NULL;
+    zt_status status =
+        zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
+    if (status == ZT_OK) status = write_frames(renderer, first, last, target, report);
+    zt_renderer_close(&renderer);
+    free(target);
+    return status;
+}
+
+static zt_status check(const zt_animation *animation, zt_report *report) {
+    zt_report_contents(animation);
+    return zt_report_finish(report);
+}
+
+static int exit_code(zt_status status, zt_report *report) {
+    if (status != ZT_OK && status != ZT_ESTOPPED && report->error_count == 0)
+        zt_report_say(report, ZT_ERROR, "%s", zt_status_text(status));
+    switch (status) {
+    case ZT_OK:
+        return EXIT_SUCCESS;
+    case ZT_EDESCRIPTION:
+        return EXIT_MISTAKES;
+    case ZT_EARGUMENT:
+        return EXIT_USAGE;
+    case ZT_ESTOPPED:
+        return EXIT_INTERRUPTED;
+    default:
+        return EXIT_REFUSED;
+    }
+}
+
+int main(int argc, char **argv) {
+    hold_standard_streams();
+    zt_report report = zt_report_create();
+    zt_options options;
+    switch (zt_options_read(&options, argc, argv, &report)) {
+    case ZT_REQUEST_SHOWN:
+        return exit_code(zt_report_finish(&report), &report);
+    case ZT_REQUEST_WRONG:
+        return EXIT_USAGE;
+    case ZT_REQUEST_RUN:
+        break;
+    }
+    report.quiet = options.quiet;
+    zt_animation *animation = NULL;
+    zt_status status = zt_animation_read(&animation, options.file, zt_report_listener(&report));
+    if (status == ZT_OK)
+        status = options.command == ZT_COMMAND_CHECK ? check(animation, &report)
+                                                     : render(&options, animation, &report);
+    zt_animation_free(&animation);
+    return exit_code(status, &report);
+}

@@ -1,0 +1,256 @@
+#include "cli/options.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536, WORDS_MAX = 4 };
+static const int64_t frame_max = INT64_C(1) << 40;
+
+/* The arguments, sorted but not yet understood. */
+typedef struct arguments {
+    const char *values[ZT_OPTION_COUNT]; /* NULL: not given; "" where it takes no value */
+    const char *words[WORDS_MAX];        /* command, file, frame, and one too many */
+    int word_count;
+} arguments;
+
+/* The option that an argument names, and what is attached to it ("=640x360"), or NULL. */
+static zt_option find_option(const char **value, const char *argument) {
+    *value = NULL;
+    bool is_long = argument[1] == '-';
+    size_t length = strcspn(argument, "=");
+    for (int i = 0; i < ZT_OPTION_COUNT; i++) {
+        const zt_option_row *row = &zt_options_known[i];
+        if (is_long && strlen(row->name) + 2 == length &&
+            strncmp(argument + 2, row->name, length - 2) == 0) {
+            if (argument[length]) *value = argument + length + 1;
+            return (zt_option)i;
+        }
+        if (!is_long && argument[1] == row->letter) {
+            if (argument[2]) *value = argument + 2;
+            return (zt_option)i;
+        }
+    }
+    return ZT_OPTION_COUNT;
+}
+
+static void say_unknown_option(zt_report *report, const char *argument) {
+    char name[32];
+    snprintf(name, sizeof name, "%s", argument + strspn(argument, "-"));
+    name[strcspn(name, "=")] = '\0';
+    zt_option near = zt_option_near(name);
+    if (near == ZT_OPTION_COUNT)
+        zt_report_say(report, ZT_ERROR, "unknown option %s; zoetrope --help lists them",
+                      argument);
+    else
+        zt_report_say(report, ZT_ERROR, "unknown option %s; did you mean --%s?", argument,
+                      zt_options_known[near].name);
+}
+
+static void say_unknown_command(zt_report *report, const char *word) {
+    zt_command near = zt_command_near(word);
+    const char *ending = strrchr(word, '.');
+    if (near < ZT_COMMAND_COUNT)
+        zt_report_say(report, ZT_ERROR, "unknown command %s; did you mean %s?", word,
+                      zt_commands[near].name);
+    else if (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0))
+        zt_report_say(report, ZT_ERROR, "unknown command %s; did you mean render %s?", word,
+                      word);
+    else
+        zt_report_say(report, ZT_ERROR, "unknown command %s; zoetrope --help lists them", word);
+}
+
+/* Takes the option at argv[i] with its value; returns the index of the last one taken, or 0. */
+static int take_option(arguments *sorted, int i, char **argv, zt_report *report) {
+    const char *value;
+    zt_option option = find_option(&value, argv[i]);
+    if (option == ZT_OPTION_COUNT) {
+        say_unknown_option(report, argv[i]);
+        return 0;
+    }
+    const zt_option_row *row = &zt_options_known[option];
+    if (!row->example && value) {
+        zt_report_say(report, ZT_ERROR, "--%s takes no value", row->name);
+        return 0;
+    }
+    if (row->example && !value) value = argv[++i]; /* NULL after the last one */
+    if (row->example && (!value || !*value)) {
+        zt_report_say(report, ZT_ERROR, "--%s needs a value, such as --%s=%s", row->name,
+                      row->name, row->example);
+        return 0;
+    }
+    sorted->values[option] = row->example ? value : "";
+    return i;
+}
+
+static bool sort_arguments(arguments *sorted, int argc, char **argv, zt_report *report) {
+    bool only_words = false;
+    for (int i = 1; i < argc; i++) {
+        if (!only_words && strcmp(argv[i], "--") == 0) {
+            only_words = true;
+        } else if (only_words || argv[i][0] != '-' || !argv[i][1]) {
+            if (sorted->word_count < WORDS_MAX) sorted->words[sorted->word_count++] = argv[i];
+        } else {
+            i = take_option(sorted, i, argv, report);
+            if (i == 0) return false;
+        }
+    }
+    return true;
+}
+
+/* Reads decimal digits and moves `text` behind them; false without any, or beyond `max`. */
+static bool read_digits(int64_t *number, const char **text, int64_t max) {
+    const char *c = *text;
+    for (*number = 0; *c >= '0' && *c <= '9'; c++) {
+        *number = *number * 10 + (*c - '0');
+        if (*number > max) return false;
+    }
+    bool some = c > *text;
+    *text = c;
+    return some;
+}
+
+static bool read_count(int *count, zt_option option, const char *text, int max,
+                       zt_report *report) {
+    const char *rest = text;
+    int64_t number = 0;
+    bool good = read_digits(&number, &rest, max) && !*rest && number > 0;
+    if (!good)
+        zt_report_say(report, ZT_ERROR, "--%s %s: must be a number from 1 to %d",
+                      zt_options_known[option].name, text, max);
+    *count = (int)number;
+    return good;
+}
+
+static bool read_size(zt_render_settings *settings, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t width = 0, height = 0;
+    bool good = read_digits(&width, &rest, ZT_IMAGE_SIDE_MAX) && *rest++ == 'x' &&
+                read_digits(&height, &rest, ZT_IMAGE_SIDE_MAX) && !*rest && width > 0 &&
+                height > 0;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--size %s: must be width and height, such as 640x360, each from 1 to %d",
+                      text, ZT_IMAGE_SIDE_MAX);
+    settings->width = (int)width;
+    settings->height = (int)height;
+    return good;
+}
+
+/* "10-40", or "7" alone. */
+static bool read_frames(zt_options *options, const char *text, zt_report *report) {
+    const char *rest = text;
+    bool good = read_digits(&options->first, &rest, frame_max);
+    options->last = options->first;
+    if (good && *rest == '-') {
+        rest++;
+        good = read_digits(&options->last, &rest, frame_max);
+    }
+    good = good && !*rest && options->first <= options->last;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--frames %s: must be a range, such as 10-40, or one frame, such as 7",
+                      text);
+    options->all_frames = false;
+    return good;
+}
+
+static bool read_frame(zt_options *options, const char *text, zt_report *report) {
+    const char *rest = text;
+    bool good = read_digits(&options->first, &rest, frame_max) && !*rest;
+    if (!good) zt_report_say(report, ZT_ERROR, "%s is not the number of a frame", text);
+    options->last = options->first;
+    options->all_frames = false;
+    return good;
+}
+
+static bool read_words(zt_options *options, const arguments *sorted, zt_report *report) {
+    const zt_command_row *command = &zt_commands[options->command];
+    int expected = 1 + command->word_count;
+    if (sorted->word_count < expected) {
+        zt_report_say(report, ZT_ERROR, "%s needs %s", command->name, command->words);
+        return false;
+    }
+    if (sorted->word_count > expected) {
+        zt_report_say(report, ZT_ERROR, "one word too many: %s", sorted->words[expected]);
+        return false;
+    }
+    options->file = sorted->words[1];
+    return options->command != ZT_COMMAND_FRAME ||
+           read_frame(options, sorted->words[2], report);
+}
+
+static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
+    const zt_command_row *command = &zt_commands[options->command];
+    const char *const *values = sorted->values;
+    for (int i = 0; i < ZT_OPTION_COUNT; i++)
+        if (values[i] && !(command->takes & 1U << i)) {
+            zt_report_say(report, ZT_ERROR, "%s takes no --%s", command->name,
+                          zt_options_known[i].name);
+            return false;
+        }
+    const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
+               *samples = values[ZT_OPTION_SAMPLES], *threads = values[ZT_OPTION_THREADS];
+    zt_render_settings *settings = &options->settings;
+    options->target = values[ZT_OPTION_OUTPUT];
+    options->quiet = values[ZT_OPTION_QUIET] != NULL;
+    return (!frames || read_frames(options, frames, report)) &&
+           (!size || read_size(settings, size, report)) &&
+           (!samples ||
+            read_count(&settings->samples, ZT_OPTION_SAMPLES, samples, SAMPLES_MAX, report)) &&
+           (!threads ||
+            read_count(&settings->threads, ZT_OPTION_THREADS, threads, THREADS_MAX, report));
+}
+
+static zt_request understand(zt_options *options, const arguments *sorted, zt_report *report) {
+    const char *command = sorted->words[0];
+    if (sorted->values[ZT_OPTION_VERSION]) {
+        puts("zoetrope " ZT_VERSION);
+        return ZT_REQUEST_SHOWN;
+    }
+    if (command) options->command = zt_command_find(command);
+    if (command && options->command == ZT_COMMAND_COUNT) {
+        say_unknown_command(report, command);
+        return ZT_REQUEST_WRONG;
+    }
+    if (sorted->values[ZT_OPTION_HELP]) {
+        zt_command_help(stdout, options->command);
+        return ZT_REQUEST_SHOWN;
+    }
+    if (!command) {
+        zt_command_help(stderr, ZT_COMMAND_COUNT);
+        return ZT_REQUEST_WRONG;
+    }
+    bool good = read_values(options, sorted, report) && read_words(options, sorted, report);
+    return good ? ZT_REQUEST_RUN : ZT_REQUEST_WRONG;
+}
+
+zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report) {
+    *options = (zt_options){.command = ZT_COMMAND_COUNT, .all_frames = true};
+    arguments sorted = {0};
+    if (!sort_arguments(&sorted, argc, argv, report)) return ZT_REQUEST_WRONG;
+    return understand(options, &sorted, report);
+}
+
+char *zt_options_target(const zt_options *options) {
+    if (options->target) return strdup(options->target);
+    const char *slash = strrchr(options->file, '/');
+    const char *name = slash ? slash + 1 : options->file;
+    const char *dot = strrchr(name, '.');
+    int length = (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    char *target = NULL;
+    int printed = 0;
+    switch (options->command) {
+    case ZT_COMMAND_FRAME:
+        printed =
+            asprintf(&target, "output/%.*s.%04" PRId64 ".png", length, name, options->first);
+        break;
+    case ZT_COMMAND_PREVIEW:
+        printed = asprintf(&target, "output/%.*s.preview.mp4", length, name);
+        break;
+    default:
+        printed = asprintf(&target, "output/%.*s.mp4", length, name);
+    }
+    return printed < 0 ? NULL : target;
+}

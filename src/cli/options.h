@@ -1,0 +1,38 @@
+/* The command line: what a person asked for. */
+#ifndef ZT_CLI_OPTIONS_H
+#define ZT_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/zoetrope.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+
+typedef struct zt_options {
+    zt_command command;
+    const char *file;            /* the description */
+    const char *target;          /* NULL: the command's own */
+    bool all_frames;             /* else first .. last, both included */
+    int64_t first, last;         /* 0 <= first <= last */
+    zt_render_settings settings; /* zero where not given */
+    bool quiet;
+} zt_options;
+
+typedef enum zt_request {
+    ZT_REQUEST_RUN,   /* the options are complete */
+    ZT_REQUEST_SHOWN, /* help or the version was asked for, and is printed */
+    ZT_REQUEST_WRONG  /* told */
+} zt_request;
+
+/* Reads GNU-style arguments: options anywhere, "--size=4x4" as "--size 4x4", "-ofilm.mp4" as
+ * "-o film.mp4", nothing but words after "--". `argv` ends with NULL; its texts stay its own.
+ */
+zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report);
+
+/* Where the images go: as told, or output/ and the description's name with an ending by the
+ * command. Of the caller to free; NULL when out of memory. */
+char *zt_options_target(const zt_options *options);
+
+#endif
