@@ -177,8 +177,8 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         return false;
     }
     options->file = sorted->words[1];
-    return options->command != ZT_COMMAND_FRAME ||
-           read_frame(options, sorted->words[2], report);
+    const char *frame = sorted->words[2]; /* NULL where the command needs none */
+    return !frame || read_frame(options, frame, report);
 }
 
 static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
