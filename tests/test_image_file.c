@@ -1,0 +1,228 @@
+/* Image files: what is written can be read again with the numbers promised, and nothing that a
+ * file or a disk does ends the process or goes unsaid. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "files.h"
+#include "image/develop.h"
+#include "image/file.h"
+
+static zt_image *read_back(const char *path) {
+    heard h;
+    zt_image *image;
+    if (zt_image_file_read(&image, path, listener_of(&h)) != ZT_OK) fail_msg("%s", h.text);
+    return image;
+}
+
+static void write_picture(const zt_image *image, zt_view view, const char *path) {
+    heard h;
+    if (zt_image_file_write(image, view, path, path, listener_of(&h)) != ZT_OK)
+        fail_msg("%s", h.text);
+}
+
+/* The largest difference of any number from what `expect` makes of the picture's. */
+static double largest_difference(const zt_image *image, const char *path,
+                                 double (*expect)(double)) {
+    zt_image *back = read_back(path);
+    assert_int_equal(back->width, image->width);
+    assert_int_equal(back->height, image->height);
+    double largest = 0;
+    for (int i = 0; i < 4 * image->width * image->height; i++) {
+        double expected = i % 4 == 3 ? 1 : expect((double)image->pixels[i]);
+        largest = fmax(largest, fabs((double)back->pixels[i] - expected));
+    }
+    zt_image_free(&back);
+    return largest;
+}
+
+static double srgb8(double linear) {
+    return floor(255 * zt_develop_value(linear, ZT_VIEW_SRGB) + 0.5) / 255;
+}
+static double srgb16(double linear) {
+    return floor(65535 * zt_develop_value(linear, ZT_VIEW_SRGB) + 0.5) / 65535;
+}
+static double raw8(double linear) {
+    return floor(255 * zt_develop_value(linear, ZT_VIEW_RAW) + 0.5) / 255;
+}
+static double as_it_is(double linear) { return linear; }
+
+/* Each format holds the picture as precisely as it can: PNG and TIFF to their last bit, half
+ * floats to 11 bits, JPEG to what the eye sees. Odd sizes, so that row lengths show. */
+static void formats_hold_the_picture(void **state) {
+    (void)state;
+    zt_image *image = picture(61, 43, 0);
+    write_picture(image, ZT_VIEW_SRGB, "a.png");
+    assert_true(largest_difference(image, "a.png", srgb8) < 1e-7);
+    write_picture(image, ZT_VIEW_RAW, "raw.PNG");
+    assert_true(largest_difference(image, "raw.PNG", raw8) < 1e-7);
+    write_picture(image, ZT_VIEW_SRGB, "a.tif");
+    assert_true(largest_difference(image, "a.tif", srgb16) < 1e-7);
+    write_picture(image, ZT_VIEW_SRGB, "a.exr");
+    assert_true(largest_difference(image, "a.exr", as_it_is) <= 0x1p-12);
+    zt_image_free(&image);
+
+    image =
+        picture(64, 64, 0); /* JPEG spreads sharp edges: without the third channel's stripes */
+    for (int i = 0; i < 64 * 64; i++) image->pixels[4 * i + 2] = 0.5f;
+    write_picture(image, ZT_VIEW_SRGB, "a.jpg");
+    assert_true(largest_difference(image, "a.jpg", srgb8) < 8.0 / 255);
+    write_picture(image, ZT_VIEW_SRGB, "b.jpeg");
+    assert_true(same_files("a.jpg", "b.jpeg"));
+    zt_image_free(&image);
+}
+
+/* Half floats end at 65504: brighter light stays the brightest there is, and never an infinity,
+ * which would spread over the whole picture in the first blur. */
+static void exr_has_no_infinities(void **state) {
+    (void)state;
+    zt_image *image = picture(4, 1, 0);
+    const float values[] = {1e30f, -1e30f, INFINITY, 65504, -0.25f, 3.5f, 0, 1000};
+    for (int i = 0; i < 8; i++) image->pixels[i / 3 * 4 + i % 3] = values[i];
+    write_picture(image, ZT_VIEW_RAW, "bright.exr");
+    zt_image *back = read_back("bright.exr");
+    const float expected[] = {65504, -65504, 65504, 65504, -0.25f, 3.5f, 0, 1000};
+    for (int i = 0; i < 8; i++) assert_true(back->pixels[i / 3 * 4 + i % 3] == expected[i]);
+    zt_image_free(&back);
+    zt_image_free(&image);
+}
+
+/* The name decides the format, the path only where it goes; names are any UTF-8. The same
+ * picture is the same file. */
+static void name_and_path(void **state) {
+    (void)state;
+    heard h;
+    zt_image *image = picture(16, 8, 0);
+    assert_int_equal(
+        zt_image_file_write(image, ZT_VIEW_SRGB, "näher – 日本.part", "x.png", listener_of(&h)),
+        ZT_OK);
+    write_picture(image, ZT_VIEW_SRGB, "plain.png");
+    assert_true(same_files("näher – 日本.part", "plain.png"));
+    size_t size;
+    char *bytes = file_bytes("plain.png", &size);
+    assert_memory_equal(bytes, "\x89PNG\r\n\x1a\n", 8);
+    assert_non_null(
+        memmem(bytes, size, "sRGB", 4)); /* tagged for the display it is meant for */
+    free(bytes);
+
+    assert_int_equal(
+        zt_image_file_write(image, ZT_VIEW_SRGB, "x.png", "x.webm", listener_of(&h)), ZT_EFILE);
+    assert_told(&h, "ending");
+    assert_int_equal(
+        zt_image_file_write(image, ZT_VIEW_SRGB, "none/x.png", "x.png", listener_of(&h)),
+        ZT_EFILE);
+    assert_told(&h, "none/x.png: No such file or directory");
+    zt_image_free(&image);
+}
+
+/* No file knows the hour: the same picture is the same file tomorrow. */
+static void no_file_has_a_date(void **state) {
+    (void)state;
+    time_t now = time(NULL);
+    char years[2][5]; /* today's and, around midnight of a year, yesterday's */
+    strftime(years[0], 5, "%Y", localtime(&now));
+    now -= 86400;
+    strftime(years[1], 5, "%Y", localtime(&now));
+    zt_image *image = picture(4, 4, 0);
+    for (const char *const *ending = zt_image_file_endings; *ending; ending++) {
+        char path[32];
+        snprintf(path, sizeof path, "date%s", *ending);
+        write_picture(image, ZT_VIEW_SRGB, path);
+        size_t size;
+        char *bytes = file_bytes(path, &size);
+        assert_null(memmem(bytes, size, years[0], 4));
+        assert_null(memmem(bytes, size, years[1], 4));
+        free(bytes);
+    }
+    zt_image_free(&image);
+}
+
+/* A full disk is an error in every format, told with its reason; the process goes on. */
+static void full_disk(void **state) {
+    (void)state;
+    zt_image *image = picture(256, 256, 0);
+    for (const char *const *ending = zt_image_file_endings; *ending; ending++) {
+        heard h;
+        char path[32];
+        snprintf(path, sizeof path, "full%s", *ending);
+        disk_has(100);
+        zt_status status = zt_image_file_write(image, ZT_VIEW_RAW, path, path, listener_of(&h));
+        disk_has(0);
+        assert_int_equal(status, ZT_EFILE);
+        assert_told(&h, "File too large");
+        write_picture(image, ZT_VIEW_RAW, path);
+    }
+    zt_image_free(&image);
+}
+
+static void assert_unreadable(const char *path) {
+    heard h;
+    zt_image *image = (zt_image *)&h;
+    if (zt_image_file_read(&image, path, listener_of(&h)) == ZT_OK)
+        fail_msg("%s was read", path);
+    assert_null(image);
+    assert_told(&h, path);
+}
+
+static void write_bytes(const char *path, const char *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+}
+
+/* What is no picture is refused: nothing there, a directory, emptiness, noise, a picture cut in
+ * its middle. */
+static void unreadable_files(void **state) {
+    (void)state;
+    zt_image *image = picture(64, 64, 0);
+    write_picture(image, ZT_VIEW_SRGB, "whole.exr");
+    zt_image_free(&image);
+    size_t size;
+    char *bytes = file_bytes("whole.exr", &size);
+    write_bytes("cut.exr", bytes, size / 2);
+    write_bytes("empty.png", bytes, 0);
+    memset(bytes, 0x5a, size);
+    write_bytes("noise.png", bytes, size);
+    write_bytes("noise.exr", bytes, size);
+    free(bytes);
+    assert_int_equal(mkdir("directory.png", 0777), 0);
+    const char *const paths[] = {"missing.png", "directory.png", "empty.png",
+                                 "noise.png",   "noise.exr",     "cut.exr"};
+    for (int i = 0; i < 6; i++) assert_unreadable(paths[i]);
+}
+
+/* The same for PNG, of whose damage libpng itself prints: cut in its middle, and a few bytes
+ * that claim to be 2^15 pixels wide and high, with the right checksum. */
+static void damaged_png(void **state) {
+    (void)state;
+    zt_image *image = picture(64, 64, 0);
+    write_picture(image, ZT_VIEW_SRGB, "whole.png");
+    zt_image_free(&image);
+    size_t size;
+    char *bytes = file_bytes("whole.png", &size);
+    write_bytes("cut.png", bytes, size / 2);
+    memcpy(bytes + 16, "\0\0\x80\0\0\0\x80\0\x08\x02\0\0\0\x4b\x1e\x34\x28", 17);
+    write_bytes("huge.png", bytes, size);
+    free(bytes);
+    assert_unreadable("cut.png");
+    assert_unreadable("huge.png");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(formats_hold_the_picture),
+        cmocka_unit_test(exr_has_no_infinities),
+        cmocka_unit_test(name_and_path),
+        cmocka_unit_test(no_file_has_a_date),
+        cmocka_unit_test(full_disk),
+        cmocka_unit_test(unreadable_files),
+    };
+    const struct CMUnitTest printing_tests[] = {cmocka_unit_test(damaged_png)};
+    int failed = cmocka_run_group_tests(tests, files_begin, files_end);
+    return failed + cmocka_run_group_tests(printing_tests, files_begin_printing, files_end);
+}
