@@ -59,8 +59,8 @@ static bool put_triangle(FILE *file, int a, int b, int c) {
 /* The two triangles between two rings that are counterclockwise seen from outside. */
 static bool put_quad(FILE *file, int ring, int i) {
     int here = ring * AROUND, ahead = (ring + 1) % ALONG * AROUND, next = (i + 1) % AROUND;
-    return put_triangle(file, here + i, here + next, ahead + next) &&
-           put_triangle(file, here + i, ahead + next, ahead + i);
+    return put_triangle(file, here + i, ahead + i, ahead + next) &&
+           put_triangle(file, here + i, ahead + next, here + next);
 }
 
 static bool put_knot(FILE *file) {
