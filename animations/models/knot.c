@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { ALONG = 567, AROUND = 62 }; /* quads of about the same length either way */
@@ -23,11 +24,10 @@ static bool put(FILE *file, uint32_t bits) {
 }
 
 static bool put_float(FILE *file, double number) {
-    union {
-        float number;
-        uint32_t bits;
-    } single = {.number = (float)number};
-    return put(file, single.bits);
+    float single = (float)number;
+    uint32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    return put(file, bits);
 }
 
 /* A ring of the tube. Its frame is made of the curve's direction and z, which is never along
