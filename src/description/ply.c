@@ -49,10 +49,10 @@ static zt_status refuse_end(const reader *r) {
 
 /* The value of a type's bytes, the most significant one last or first. */
 static double binary_number(const char *at, zt_ply_type type, bool big_endian) {
-    uint64_t bits = 0;
     int size = zt_ply_type_size(type);
+    uint64_t bits = 0;
     for (int i = 0; i < size; i++)
-        bits |= (uint64_t)(unsigned char)at[big_endian ? size - 1 - i : i] << (8 * i);
+        bits = bits << 8 | (unsigned char)at[big_endian ? i : size - 1 - i];
     uint32_t bits32 = (uint32_t)bits;
     float single;
     double number = 0;
@@ -124,13 +124,14 @@ static zt_status skip_values(reader *r, zt_ply_type type, int32_t count) {
 
 /* How many items a list has: never more than the file has bytes left for. */
 static zt_status read_length(reader *r, const zt_ply_property *list, int32_t *length) {
-    double number;
+    double number = 0;
     ZT_TRY(read_number(r, list->count_type, &number));
     if (!(number >= 0 && number <= INT32_MAX) || number != floor(number))
         return REFUSE_ROW(r, "a list cannot have %.10g items", number);
     int64_t item_size =
         is_ascii(r) ? 2 /* a blank and a digit */ : zt_ply_type_size(list->type);
-    if (number > (double)((r->source->end - r->at) / item_size))
+    int64_t room = (r->source->end - r->at) / item_size;
+    if ((int64_t)number > room)
         return REFUSE_ROW(r, "the file is too short for a list of %.10g items", number);
     *length = (int32_t)number;
     return ZT_OK;
@@ -179,7 +180,7 @@ static zt_status survey(reader *r) {
 
 static zt_status take_coordinate(reader *r, const zt_ply_property *property, int32_t count) {
     (void)count; /* coordinates are no lists */
-    double value;
+    double value = 0;
     ZT_TRY(read_number(r, property->type, &value));
     if (!(fabs(value) <= coordinate_max))
         return REFUSE_ROW(r, "%c is %g, but must lie between -%g and %g", "xyz"[property->role],
@@ -191,7 +192,7 @@ static zt_status take_coordinate(reader *r, const zt_ply_property *property, int
 
 /* A vertex's index; where `restart` is given, true there instead for -1. */
 static zt_status read_corner(reader *r, zt_ply_type type, uint32_t *corner, bool *restart) {
-    double number;
+    double number = 0;
     ZT_TRY(read_number(r, type, &number));
     if (restart) *restart = number == -1;
     if (restart && *restart) return ZT_OK;
@@ -250,10 +251,9 @@ static zt_status read_triangles(reader *r, zt_arena *arena, zt_arena *scratch) {
     if (r->triangle_count == 0)
         return zt_ply_refuse(r->source, NULL, 0, "no strip has three corners");
     if (r->triangulator.given_up > 0)
-        zt_tell(
-            r->source->listener, ZT_WARNING,
-            "%s: %d polygons have too many corners to be cut with care; they may look wrong",
-            r->source->path, r->triangulator.given_up);
+        zt_tell_at(r->source->listener, ZT_WARNING, &(zt_place){.file = r->source->path},
+                   "polygons too intricate to be cut with care: %d; they may look wrong",
+                   r->triangulator.given_up);
     return ZT_OK;
 }
 

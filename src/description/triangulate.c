@@ -73,11 +73,9 @@ static bool lay_out(zt_triangulator *t, const uint32_t *corners, int32_t count) 
     double side = along_x ? n.x : along_y ? n.y : n.z;
     for (int32_t i = 0; i < count; i++) {
         vec3 p = corner_position(t, corners, i);
-        double x = along_x ? p.y : along_y ? p.z : p.x;
+        double x = along_x ? p.y : along_y ? p.z : p.x, y = along_x ? p.z : along_y ? p.x : p.y;
         ring[i] = (corner){.x = side < 0 ? -x : x,
-                           .y = along_x   ? p.z
-                                : along_y ? p.x
-                                          : p.y,
+                           .y = y,
                            .previous = i > 0 ? i - 1 : count - 1,
                            .next = i + 1 < count ? i + 1 : 0,
                            .vertex = corners[i]};
