@@ -145,7 +145,8 @@ static zt_status tell_yaml_error(source *s, const yaml_parser_t *yaml) {
                          : place_at(s, yaml->problem_mark.line, yaml->problem_mark.column);
     zt_mistake(s->mistakes, &place, "this is not YAML%s: %s", unreadable ? " in UTF-8" : "",
                yaml->problem ? yaml->problem : "unknown error");
-    if (yaml->context && !unreadable) {
+    bool elsewhere = yaml->context_mark.index != yaml->problem_mark.index;
+    if (yaml->context && elsewhere && !unreadable) {
         place = place_at(s, yaml->context_mark.line, yaml->context_mark.column);
         zt_mistake_note(s->mistakes, &place, "%s that begins here", yaml->context);
     }

@@ -62,7 +62,8 @@ void zt_expected(zt_mistakes *mistakes, const zt_node *node, const char *what,
         zt_mistake(mistakes, &node->place, "\"%s\" must be %s, not a list of %d", what,
                    expected, (int)node->count);
     else if (node->kind == ZT_NODE_MAPPING)
-        zt_mistake(mistakes, &node->place, "\"%s\" must be %s, not a mapping", what, expected);
+        zt_mistake(mistakes, &node->place, "\"%s\" must be %s, not %s", what, expected,
+                   node->count ? "a mapping" : "an empty mapping");
 }
 
 /* ---- numbers --------------------------------------------------------------------------------
@@ -146,24 +147,39 @@ typedef bool number_reader(double *value, zt_mistakes *mistakes, const zt_node *
                            const char *what, zt_range range);
 
 static bool read_three(double value[3], zt_mistakes *mistakes, const zt_node *node,
-                       const char *what, zt_range range, number_reader *read) {
+                       const char *what, zt_range range, const char *expected,
+                       number_reader *read) {
     if (node->kind != ZT_NODE_LIST || node->count != 3) {
-        zt_expected(mistakes, node, what, "a list of 3 numbers");
+        zt_expected(mistakes, node, what, expected);
         return false;
     }
     bool good = true;
-    for (int i = 0; i < 3; i++) good &= read(&value[i], mistakes, node->items[i], what, range);
+    for (int i = 0; i < 3; i++) {
+        const zt_node *item = node->items[i];
+        double number;
+        const char *unit;
+        if (zt_read_quantity(&number, &unit, item)) {
+            good &= read(&value[i], mistakes, item, what, range);
+            continue;
+        }
+        good = false;
+        if (item->kind != ZT_NODE_MISTAKE)
+            zt_mistake(mistakes, &item->place, "\"%s\" must be %s, and this is none", what,
+                       expected);
+    }
     return good;
 }
 
 bool zt_read_vector(double value[3], zt_mistakes *mistakes, const zt_node *node,
                     const char *what, zt_range range) {
-    return read_three(value, mistakes, node, what, range, zt_read_number);
+    return read_three(value, mistakes, node, what, range, "a list of 3 numbers",
+                      zt_read_number);
 }
 
 bool zt_read_angles(double radians[3], zt_mistakes *mistakes, const zt_node *node,
                     const char *what, zt_range range) {
-    return read_three(radians, mistakes, node, what, range, zt_read_angle);
+    return read_three(radians, mistakes, node, what, range, "a list of 3 angles",
+                      zt_read_angle);
 }
 
 /* ---- words ----------------------------------------------------------------------------------

@@ -12,7 +12,8 @@ static zt_status read_material(int32_t *index, zt_reading *reading, const zt_nod
     int name_count = zt_motion_names(names, ZT_OWNER_MATERIAL);
     zt_fields fields;
     *index = -1;
-    if (!zt_fields_open(&fields, &reading->mistakes, node, name, names, name_count))
+    if (!zt_fields_open(&fields, &reading->mistakes, node, zt_show(name).text, names,
+                        name_count))
         return ZT_OK;
     *index = reading->animation->rest.material_count++;
     return zt_motion_read(reading, &fields, ZT_OWNER_MATERIAL, *index, name, &node->place);

@@ -55,12 +55,18 @@ static bool read_rotation(double value[4], zt_mistakes *mistakes, const zt_node 
 static bool read_vertices(double value[9], zt_mistakes *mistakes, const zt_node *node,
                           const char *what, zt_range range) {
     if (node->kind != ZT_NODE_LIST || node->count != 3) {
-        zt_expected(mistakes, node, what, "a list of 3 points");
+        zt_expected(mistakes, node, what, "a list of 3 points [x, y, z]");
         return false;
     }
     bool good = true;
-    for (int i = 0; i < 3; i++)
-        good &= zt_read_vector(value + 3 * i, mistakes, node->items[i], what, range);
+    for (int i = 0; i < 3; i++) {
+        const zt_node *point = node->items[i];
+        bool three = point->kind == ZT_NODE_LIST && point->count == 3;
+        if (!three && point->kind != ZT_NODE_MISTAKE)
+            zt_mistake(mistakes, &point->place,
+                       "\"%s\" must be a list of 3 points [x, y, z], and this is none", what);
+        good &= three && zt_read_vector(value + 3 * i, mistakes, point, what, range);
+    }
     return good;
 }
 

@@ -165,12 +165,24 @@ static zt_status make(zt_node **out, int *anchor_index, zt_nodes *n, const zt_pl
     return ZT_OK;
 }
 
+/* The key whose value comes next, or NULL. */
+static const zt_node *waiting_key(const zt_nodes *n) {
+    if (n->depth == 0) return NULL;
+    const frame *around = &n->frames[n->depth - 1];
+    bool value_next = (n->waiting_count - around->first_item) % 2 == 1;
+    return around->node->kind == ZT_NODE_MAPPING && value_next
+               ? n->waiting[n->waiting_count - 1]
+               : NULL;
+}
+
 zt_status zt_nodes_text(zt_nodes *n, const zt_place *place, zt_node_marks marks,
                         const char *text, size_t length, bool quoted) {
     zt_node *node;
     int anchor_index;
     ZT_TRY(make(&node, &anchor_index, n, place, marks, ZT_NODE_TEXT));
     if (anchor_index >= 0) n->anchors[anchor_index].open = false;
+    const zt_node *key = length == 0 && !quoted ? waiting_key(n) : NULL;
+    if (key) node->place = key->place; /* where nothing is written, nothing can be shown */
     if (quoted) node->quoted = true;
     node->text = push_text(n, text, length);
     if (!node->text) return ZT_EMEMORY;

@@ -60,7 +60,7 @@ static bool read_kind(zt_owner *owner, zt_mistakes *mistakes, const zt_node *nod
     if (node->kind == ZT_NODE_MISTAKE) return false;
     if (node->kind != ZT_NODE_MAPPING || node->count == 0) {
         zt_mistake(mistakes, &node->place, "each %s is its kind and a mapping: \"%s: {...}\"",
-                   what, zt_owner_name(last));
+                   what, zt_owner_name(first));
         return false;
     }
     const zt_node *word = zt_node_key(node, 0);

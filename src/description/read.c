@@ -107,21 +107,20 @@ static zt_status read_camera(zt_reading *reading, const zt_node *node) {
 /* ---- all of it ------------------------------------------------------------------------------
  */
 
-/* Whether the description is written in the language that this program reads. */
-static bool read_version(zt_mistakes *mistakes, const zt_fields *fields) {
-    const zt_node *node = zt_field(fields, "zoetrope");
+/* Whether the description is written in another version of the language: then nothing else in
+ * it is judged. */
+static bool is_other_version(zt_mistakes *mistakes, const zt_node *root) {
+    const zt_node *node = root->kind == ZT_NODE_MAPPING
+                              ? zt_field(&(zt_fields){.mapping = root}, "zoetrope")
+                              : NULL;
     int64_t version;
-    if (!node) {
-        zt_mistake(mistakes, &fields->mapping->place,
-                   "\"zoetrope\" is missing; begin with \"zoetrope: %d\"", LANGUAGE_VERSION);
-        return true;
-    }
-    if (!zt_read_integer(&version, mistakes, node, "zoetrope", 0, INT32_MAX)) return true;
-    if (version == LANGUAGE_VERSION) return true;
+    if (!node || !zt_read_integer(&version, mistakes, node, "zoetrope", 0, INT32_MAX) ||
+        version == LANGUAGE_VERSION)
+        return false;
     zt_mistake(mistakes, &node->place,
                "this is version %d of the language; this program reads version %d",
                (int)version, LANGUAGE_VERSION);
-    return false;
+    return true;
 }
 
 static void warn_of_nothing(const zt_reading *reading, const zt_node *root) {
@@ -139,9 +138,12 @@ static zt_status read_root(zt_reading *reading, const zt_node *root, const char 
                                         "materials", "lights", "objects"};
     zt_mistakes *mistakes = &reading->mistakes;
     zt_fields fields;
-    if (!zt_fields_open(&fields, mistakes, root, "description", names, COUNT(names)) ||
-        !read_version(mistakes, &fields))
+    if (is_other_version(mistakes, root) ||
+        !zt_fields_open(&fields, mistakes, root, "description", names, COUNT(names)))
         return ZT_OK;
+    if (!zt_field_required(&fields, mistakes, "zoetrope", &root->place))
+        zt_mistake_note(mistakes, &root->place, "a description begins with \"zoetrope: %d\"",
+                        LANGUAGE_VERSION);
     const zt_node *film = zt_field_required(&fields, mistakes, "film", &root->place);
     const zt_node *camera = zt_field_required(&fields, mistakes, "camera", &root->place);
     if (film) read_film(reading, film);
@@ -182,6 +184,7 @@ zt_status zt_animation_read(zt_animation **out, const char *path, zt_listener li
         zt_status mistakes = zt_mistakes_close(&reading.mistakes, path);
         if (status == ZT_OK) status = mistakes;
     }
+    if (status == ZT_EMEMORY) zt_tell(listener, ZT_ERROR, "not enough memory to read %s", path);
     if (status == ZT_OK)
         *out = animation;
     else
