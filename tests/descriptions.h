@@ -1,0 +1,34 @@
+/* For tests that read descriptions: a text becomes an animation. cmocka.h comes first; the
+ * tests run in a directory of their own (files.h). */
+#ifndef ZT_TESTS_DESCRIPTIONS_H
+#define ZT_TESTS_DESCRIPTIONS_H
+
+#include "files.h"
+#include "keyframe/animation.h"
+#include "told.h"
+
+#define HEAD "zoetrope: 1\nfilm: { duration: 1 s }\ncamera: { position: [0, 0, 5] }\n"
+
+static inline void write_bytes(const char *path, const char *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Reads a text as a description; what was told is in `t`. */
+static inline zt_status read_told(told *t, zt_animation **animation, const char *text) {
+    write_bytes("film.yaml", text, strlen(text));
+    *t = (told){.file = "film.yaml"};
+    return zt_animation_read(animation, "film.yaml", told_to(t));
+}
+
+/* The animation of a text without mistakes, of the caller to free. */
+static inline zt_animation *animation_of(const char *text) {
+    static told t;
+    zt_animation *animation;
+    if (read_told(&t, &animation, text) != ZT_OK) fail_msg("%s in\n%s", t.lines, text);
+    return animation;
+}
+
+#endif

@@ -1,0 +1,245 @@
+/* Shows that no file makes reading crash, hang, or take memory without bound, that what cannot
+ * be read is always told of, and that telling itself ends. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "descriptions.h"
+#include "draw.h"
+
+/* A bit of everything. */
+static const char good[] =
+    "zoetrope: 1\n"
+    "film: { size: [64, 36], rate: 24, duration: 2 s, view: raw, samples: 2 } # a comment\n"
+    "camera: { position: [0, 1.5, 6], look_at: [0, 1, 0], fov: { keys: { 0: 40 deg, 9: 0.7 rad "
+    "} } }\n"
+    "materials:\n"
+    "  wall: &wall { color: [0.8, 0.8, 0.75], reflectivity: 0.3 }\n"
+    "  clay: { <<: *wall, color: \"#c8553d\" }\n"
+    "lights:\n"
+    "  - ambient: { color: white, intensity: 0.2 }\n"
+    "  - point: { name: \"l\\u00e4mp\", position: [2, 4, 2], shadows: true }\n"
+    "objects:\n"
+    "  - plane: { normal: [0, 1, 0], material: wall }\n"
+    "  - sphere:\n"
+    "      name: ball\n"
+    "      radius: 1\n"
+    "      material: clay\n"
+    "      center:\n"
+    "        curve: smooth\n"
+    "        keys: { 0 s: [-2, 1, 0], 500 ms: &here [0, 2.2, 0], 48: [2, 1, 0], 60: *here }\n"
+    "  - triangle: { vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], material: { color: red } }\n"
+    "  - group:\n"
+    "      rotation: { keys: { 0: [0, 0, 0], 24: { axis: [0, 1, 0], angle: 90 } } }\n"
+    "      objects: [ sphere: { center: [0, 0, 0], radius: 1 } ]\n";
+
+/* Reads some bytes: an animation, or mistakes that were told with places in this file. */
+static zt_status read_bytes(told *t, const char *bytes, size_t size) {
+    zt_animation *animation;
+    write_bytes("film.yaml", bytes, size);
+    *t = (told){.file = "film.yaml"};
+    zt_status status = zt_animation_read(&animation, "film.yaml", told_to(t));
+    assert_true(status == ZT_OK || status == ZT_EDESCRIPTION);
+    assert_true((status == ZT_OK) == (animation != NULL));
+    assert_true((status == ZT_OK) == (t->error_count == 0));
+    assert_int_equal(t->foreign_count, 0);
+    zt_animation_free(&animation);
+    return status;
+}
+
+/* The file ends anywhere. */
+static void every_beginning(void **state) {
+    (void)state;
+    static told t;
+    assert_int_equal(read_bytes(&t, good, sizeof good - 1), ZT_OK);
+    assert_string_equal(t.lines, "");
+    for (size_t size = 0; size < sizeof good; size++) read_bytes(&t, good, size);
+}
+
+/* One or two runs of bytes are changed, left out, doubled, or become something that YAML cares
+ * about.
+ */
+static void random_changes(void **state) {
+    (void)state;
+    static told t;
+    static const char special[] = "{}[]:,&*#!|>'\"%@`-?<~ \n\t\r\\\x80\xC2\x85\xE2\xFF\x01"
+                                  "0123456789.eE+";
+    draw d = {.key = 7};
+    int ok_count = 0;
+    for (int round = 0; round < 4000; round++) {
+        char text[2 * sizeof good];
+        size_t size = sizeof good - 1;
+        memcpy(text, good, size);
+        for (int i = draw_below(&d, 3) == 0; i >= 0; i--) {
+            size_t at = (size_t)draw_below(&d, (int)size - 8);
+            size_t run = 1 + (size_t)draw_below(&d, 7);
+            switch (draw_below(&d, 4)) {
+            case 0:
+                text[at] = (char)draw_bits(&d);
+                break;
+            case 1:
+                text[at] = special[draw_below(&d, sizeof special - 1)];
+                break;
+            case 2:
+                memmove(text + at, text + at + run, size - at - run);
+                size -= run;
+                break;
+            case 3:
+                memmove(text + at + run, text + at, size - at);
+                size += run;
+                break;
+            }
+        }
+        ok_count += read_bytes(&t, text, size) == ZT_OK;
+    }
+    /* Neither all nor none: the changes were neither idle nor all of them the end. */
+    assert_in_range(ok_count, 100, 3900);
+}
+
+/* Text that grows: a beginning, many times a middle, an end. */
+static char *grown(size_t *size, const char *begin, const char *middle, size_t count,
+                   const char *end) {
+    size_t begin_size = strlen(begin), middle_size = strlen(middle), end_size = strlen(end);
+    *size = begin_size + count * middle_size + end_size;
+    char *text = malloc(*size + 1), *at = text;
+    assert_non_null(text);
+    memcpy(at, begin, begin_size);
+    at += begin_size;
+    for (size_t i = 0; i < count; i++, at += middle_size) memcpy(at, middle, middle_size);
+    memcpy(at, end, end_size + 1);
+    return text;
+}
+
+static long peak_memory_mb(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+}
+
+/* A hundred bytes that stand for 10^11 values cost nothing. */
+static void alias_bomb(void **state) {
+    (void)state;
+    static told t;
+    char text[4096] = HEAD "a: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+    for (int i = 1; i < 11; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used,
+                 "b%d: &a%d [*a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d]\n", i,
+                 i, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1);
+    }
+    double begin_s = zt_clock_s();
+    long before_mb = peak_memory_mb();
+    assert_int_equal(read_bytes(&t, text, strlen(text)), ZT_EDESCRIPTION);
+    assert_int_equal(t.error_count, 1);
+    assert_non_null(strstr(t.lines, "aliases"));
+    assert_true(zt_clock_s() - begin_s < 1);
+    assert_true(peak_memory_mb() - before_mb < 64);
+}
+
+/* What aliases may still stand for is read in bounded time: groups within groups within groups.
+ */
+static void alias_groups(void **state) {
+    (void)state;
+    static told t;
+    char text[4096] =
+        HEAD "objects:\n  - group: { objects: &g0 [sphere: { radius: 1, colr: 1 }] }\n";
+    for (int i = 1; i < 14; i++) {
+        size_t used = strlen(text);
+        snprintf(
+            text + used, sizeof text - used,
+            "  - group: { objects: &g%d [ group: { objects: *g%d }, group: { objects: *g%d "
+            "} ] }\n",
+            i, i - 1, i - 1);
+    }
+    double begin_s = zt_clock_s();
+    assert_int_equal(read_bytes(&t, text, strlen(text)), ZT_EDESCRIPTION);
+    assert_int_equal(t.error_count, 2); /* the key and the missing center, once each */
+    assert_true(zt_clock_s() - begin_s < 5);
+}
+
+/* Large and deep files of each kind end, and soon. */
+static void large_files(void **state) {
+    (void)state;
+    static told t;
+    static const struct {
+        const char *begin, *middle, *end, *words;
+        size_t count;
+    } cases[] = {
+        {"a: ", "[", "", "nested too deep", 1000000},
+        {"a: ", "{a: ", "", "nested too deep", 300000},
+        {"", "- ", "", "nested too deep", 500000},
+        {"", "? ", "", "nested too deep", 500000},
+        {HEAD "objects: [", "&a 1, ", "]\n", "too many anchors", 200000},
+        {HEAD "objects: [&a 1, ", "*a, ", "]\n", "too many values", 1100000},
+        {HEAD "objects: [", "sphere: {}, ", "]\n", "not shown", 50000},
+        {HEAD, "\n", "objcts: []\n", "objects", 1000000},
+        {HEAD "# ", "#", "\nobjcts: []\n", "objects", 1000000},
+        {HEAD "objcts: \"", "a\n \n", "\"\n", "objects", 300000},
+        {HEAD "objects: [group: { name: \"", "x", "\" } ]\n", "missing", 1000000},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        size_t size;
+        char *text =
+            grown(&size, cases[i].begin, cases[i].middle, cases[i].count, cases[i].end);
+        double begin_s = zt_clock_s();
+        assert_int_equal(read_bytes(&t, text, size), ZT_EDESCRIPTION);
+        if (!strstr(t.lines, cases[i].words)) fail_msg("case %zu: %.500s", i, t.lines);
+        if (zt_clock_s() - begin_s > 5) fail_msg("case %zu takes long", i);
+        free(text);
+    }
+}
+
+/* After a hundred mistakes the others are counted. */
+static void many_mistakes(void **state) {
+    (void)state;
+    static told t;
+    size_t size;
+    char *text =
+        grown(&size, HEAD "lights:\n", "  - point: { position: [0, 0, x] }\n", 350, "");
+    assert_int_equal(read_bytes(&t, text, size), ZT_EDESCRIPTION);
+    assert_int_equal(t.error_count, 100);
+    assert_int_equal(t.note_count, 1);
+    assert_non_null(strstr(t.lines, "note: mistakes that are not shown: 250\n"));
+    free(text);
+}
+
+/* A file that cannot be read is no mistake of the description. */
+static void unreadable_files(void **state) {
+    (void)state;
+    static told t;
+    static const char *const paths[] = {"absent.yaml", ".", "absent/film.yaml", ""};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        t = (told){.file = paths[i]};
+        zt_animation *animation;
+        assert_int_equal(zt_animation_read(&animation, paths[i], told_to(&t)), ZT_EFILE);
+        assert_null(animation);
+        assert_int_equal(t.error_count, 1);
+        assert_int_equal(t.foreign_count, 0);
+    }
+}
+
+/* Nobody needs to listen. */
+static void silent(void **state) {
+    (void)state;
+    zt_animation *animation;
+    write_bytes("film.yaml", "a: b\n", 5);
+    assert_int_equal(zt_animation_read(&animation, "film.yaml", (zt_listener){0}),
+                     ZT_EDESCRIPTION);
+    assert_int_equal(zt_animation_read(&animation, "none.yaml", (zt_listener){0}), ZT_EFILE);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_beginning),  cmocka_unit_test(random_changes),
+        cmocka_unit_test(alias_bomb),       cmocka_unit_test(alias_groups),
+        cmocka_unit_test(large_files),      cmocka_unit_test(many_mistakes),
+        cmocka_unit_test(unreadable_files), cmocka_unit_test(silent),
+    };
+    return cmocka_run_group_tests(tests, files_begin, files_end);
+}
