@@ -280,7 +280,7 @@ static void mutate(uint64_t key) {
         file.bytes[at] = (char)zt_random_key(key, 5);
         break;
     case 1:
-        file.bytes[at] ^= (char)(1 << zt_random_key(key, 5) % 8);
+        file.bytes[at] = (char)(file.bytes[at] ^ 1 << zt_random_key(key, 5) % 8);
         break;
     case 2: /* in the place of others */
         memcpy(file.bytes + at, piece, piece_length < rest ? piece_length : rest);
