@@ -1,5 +1,5 @@
-/* An output is a small table of calls. Each kind of output gives one; output.c asks them in turn
- * whether they accept a target. */
+/* An output is a small table of calls. Each kind of output gives one; output.c picks the one
+ * that knows the target's ending. */
 #ifndef ZT_ENCODE_SINK_H
 #define ZT_ENCODE_SINK_H
 
@@ -8,14 +8,15 @@
 #include <zoetrope/output.h>
 
 typedef struct zt_sink {
-    const char *what; /* for messages: "a movie (.mp4)" */
-    bool (*accepts)(const char *target);
+    const char *what;           /* for messages: "a movie" */
+    const char *const *endings; /* that it accepts, each with its dot; NULL after the last */
     /* Makes *state; tells why not. Everything that can be refused is refused here. */
     zt_status (*open)(void **state, const char *target, const zt_output_format *format,
                       zt_listener listener);
+    /* After a failure, which is told, only `close` is called. */
     zt_status (*write)(void *state, const zt_image *image, int64_t frame);
-    /* Frees the state. `keep`: complete the files and give them their names; else remove what is
-     * unfinished. */
+    /* Frees the state. `keep`: complete the files and give them their names, and tell where
+     * that fails; else remove what is unfinished. */
     zt_status (*close)(void *state, bool keep);
 } zt_sink;
 

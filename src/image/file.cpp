@@ -45,11 +45,6 @@ zt_status refuse(zt_listener listener, const char *what, const char *path,
     return ZT_EFILE;
 }
 
-zt_status refuse_memory(zt_listener listener, const char *what, const char *path) {
-    zt_tell(listener, ZT_ERROR, "cannot %s %s: out of memory", what, path);
-    return ZT_EMEMORY;
-}
-
 /* Runs `body`; what it throws becomes a status. */
 template <typename Body>
 zt_status without_exceptions(zt_listener listener, const char *what, const char *path,
@@ -57,7 +52,7 @@ zt_status without_exceptions(zt_listener listener, const char *what, const char 
     try {
         return body();
     } catch (const std::bad_alloc &) {
-        return refuse_memory(listener, what, path);
+        return ZT_EMEMORY;
     } catch (const std::exception &e) {
         return refuse(listener, what, path, e.what());
     } catch (...) {
@@ -173,8 +168,8 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     if (!input->read_image(0, 0, 0, channel_count, OIIO::TypeDesc::FLOAT, values.data()))
         return refuse(listener, "read", path, input->geterror());
     zt_status status = zt_image_create(image, spec.width, spec.height);
-    if (status == ZT_EMEMORY) return refuse_memory(listener, "read", path);
-    if (status != ZT_OK) return refuse(listener, "read", path, "it is too large");
+    if (status == ZT_EARGUMENT) return refuse(listener, "read", path, "it is too large");
+    if (status != ZT_OK) return status;
     spread(*image, values.data(), channel_count);
     return ZT_OK;
 }

@@ -1,0 +1,26 @@
+/* Files are written aside, as "<name>.part" in the same directory, and get their name when they
+ * are complete: nobody ever sees half a file, and an older one is there until the new one is.
+ */
+#ifndef ZT_ENCODE_ASIDE_H
+#define ZT_ENCODE_ASIDE_H
+
+#include <zoetrope/status.h>
+
+/* Zeroed: nothing is under way. */
+typedef struct zt_aside {
+    char *path;   /* where to write */
+    char *target; /* what it will be called */
+} zt_aside;
+
+/* Makes missing directories and an empty file at aside->path, which shows that it can be
+ * written. ZT_EFILE after telling why not; then nothing is under way. */
+zt_status zt_aside_open(zt_aside *aside, const char *target, zt_listener listener);
+
+/* Gives the file its name, and forgets about it. Where that fails, which is told, removes it.
+ */
+zt_status zt_aside_keep(zt_aside *aside, zt_listener listener);
+
+/* Removes the file, if one is under way. */
+void zt_aside_drop(zt_aside *aside);
+
+#endif

@@ -1,0 +1,76 @@
+/* Checksums instead of pictures: the basis of "still the same pictures".
+ *
+ * A line for each frame, all of one width:
+ *
+ *          42  1280x720   9f06b2a5a3e1c0d4c7b1f0e2d3a49586
+ *
+ * the frame's number in 12 places, its width (5, to the right) x its height (5, to the left),
+ * and the XXH3 128-bit checksum, high half first, of its float pixels as they lie in memory. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/diag.h"
+#include "base/hash.h"
+#include "encode/aside.h"
+#include "encode/sink.h"
+
+typedef struct checksum {
+    FILE *file;
+    zt_aside aside;
+    zt_listener listener;
+} checksum;
+
+static zt_status refuse(checksum *sums) {
+    zt_tell(sums->listener, ZT_ERROR, "cannot write %s: %s", sums->aside.target,
+            strerror(errno));
+    return ZT_EFILE;
+}
+
+static zt_status close_checksum(void *state, bool keep) {
+    checksum *sums = state;
+    zt_status status = ZT_OK;
+    if (sums->file && fclose(sums->file) != 0 && keep) status = refuse(sums);
+    if (keep && status == ZT_OK)
+        status = zt_aside_keep(&sums->aside, sums->listener);
+    else
+        zt_aside_drop(&sums->aside);
+    free(sums);
+    return status;
+}
+
+static zt_status open_file(checksum *sums, const char *target) {
+    ZT_TRY(zt_aside_open(&sums->aside, target, sums->listener));
+    sums->file = fopen(sums->aside.path, "w");
+    return sums->file ? ZT_OK : refuse(sums);
+}
+
+static zt_status open_checksum(void **state, const char *target, const zt_output_format *format,
+                               zt_listener listener) {
+    (void)format;
+    checksum *sums = calloc(1, sizeof *sums);
+    if (!sums) return ZT_EMEMORY;
+    sums->listener = listener;
+    zt_status status = open_file(sums, target);
+    if (status == ZT_OK)
+        *state = sums;
+    else
+        close_checksum(sums, false);
+    return status;
+}
+
+static zt_status write_checksum(void *state, const zt_image *image, int64_t frame) {
+    checksum *sums = state;
+    size_t pixel_count = (size_t)image->width * (size_t)image->height;
+    zt_hash hash = zt_hash_bytes(image->pixels, pixel_count * 4 * sizeof *image->pixels);
+    int length = fprintf(sums->file, "%12" PRId64 " %5dx%-5d %016" PRIx64 "%016" PRIx64 "\n",
+                         frame, image->width, image->height, hash.high, hash.low);
+    /* Flushed, so that a full disk is known now and not after hours of rendering. */
+    return length > 0 && fflush(sums->file) == 0 ? ZT_OK : refuse(sums);
+}
+
+static const char *const endings[] = {".hash", NULL};
+const zt_sink zt_sink_checksum = {"checksums", endings, open_checksum, write_checksum,
+                                  close_checksum};

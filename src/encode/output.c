@@ -1,0 +1,123 @@
+/* An output: one of the sinks, and the rules that hold for all of them. */
+#include <zoetrope/output.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/diag.h"
+#include "base/text.h"
+#include "encode/sink.h"
+
+static const zt_sink *const sinks[] = {&zt_sink_video, &zt_sink_stills, &zt_sink_checksum};
+enum { SINK_COUNT = sizeof sinks / sizeof *sinks, LIST_MAX = 256 };
+
+struct zt_output {
+    const zt_sink *sink;
+    void *state;
+    zt_output_format format;
+    zt_listener listener;
+    bool written;       /* at least one image */
+    int64_t last_frame; /* of those */
+    zt_status failure;  /* the first one; nothing is written after it */
+};
+
+static const zt_sink *sink_of(const char *target) {
+    for (int s = 0; s < SINK_COUNT; s++)
+        for (const char *const *ending = sinks[s]->endings; *ending; ending++)
+            if (zt_text_ends_with(target, *ending, true)) return sinks[s];
+    return NULL;
+}
+
+static void append(char list[LIST_MAX], const char *separator, const char *text) {
+    size_t length = strlen(list);
+    snprintf(list + length, LIST_MAX - length, "%s%s", separator, text);
+}
+
+/* Says which endings there are, and which one may have been meant. */
+static zt_status refuse_target(const char *target, zt_listener listener) {
+    const char *slash = strrchr(target, '/'), *dot = strrchr(slash ? slash : target, '.');
+    zt_nearest nearest = zt_nearest_to(dot ? dot : "");
+    char list[LIST_MAX] = "";
+    for (int s = 0; s < SINK_COUNT; s++) {
+        append(list, s ? "; " : "", sinks[s]->what);
+        for (const char *const *ending = sinks[s]->endings; *ending; ending++) {
+            append(list, " ", *ending);
+            zt_nearest_try(&nearest, *ending);
+        }
+    }
+    if (nearest.best)
+        zt_tell(listener, ZT_ERROR,
+                "no output is named %s; did you mean \"%s\"? The ending decides: %s", target,
+                nearest.best, list);
+    else
+        zt_tell(listener, ZT_ERROR, "no output is named %s. The ending decides: %s", target,
+                list);
+    return ZT_EUNSUPPORTED;
+}
+
+static zt_status check_format(const zt_output_format *format, zt_listener listener) {
+    bool size_legal = format->width >= 1 && format->width <= ZT_IMAGE_SIDE_MAX &&
+                      format->height >= 1 && format->height <= ZT_IMAGE_SIDE_MAX;
+    if (size_legal && format->rate.num > 0 && format->rate.den > 0) return ZT_OK;
+    zt_tell(listener, ZT_ERROR, "no output can have %dx%d pixels at %d/%d frames a second",
+            format->width, format->height, format->rate.num, format->rate.den);
+    return ZT_EARGUMENT;
+}
+
+zt_status zt_output_open(zt_output **out, const char *target, const zt_output_format *format,
+                         zt_listener listener) {
+    *out = NULL;
+    ZT_TRY(check_format(format, listener));
+    const zt_sink *sink = sink_of(target);
+    if (!sink) return refuse_target(target, listener);
+    zt_output *output = calloc(1, sizeof *output);
+    if (!output) return ZT_EMEMORY;
+    *output = (zt_output){.sink = sink, .format = *format, .listener = listener};
+    zt_status status = sink->open(&output->state, target, format, listener);
+    if (status == ZT_OK)
+        *out = output;
+    else
+        free(output);
+    return status;
+}
+
+static zt_status check_image(const zt_output *output, const zt_image *image, int64_t frame) {
+    const zt_output_format *format = &output->format;
+    if (image->width != format->width || image->height != format->height) {
+        zt_tell(output->listener, ZT_ERROR,
+                "an image of %dx%d pixels came to an output of %dx%d", image->width,
+                image->height, format->width, format->height);
+        return ZT_EARGUMENT;
+    }
+    if (output->written && frame <= output->last_frame) {
+        zt_tell(output->listener, ZT_ERROR,
+                "frame %" PRId64 " came after frame %" PRId64 "; frames come in rising order",
+                frame, output->last_frame);
+        return ZT_EARGUMENT;
+    }
+    return ZT_OK;
+}
+
+static zt_status write_image(zt_output *output, const zt_image *image, int64_t frame) {
+    ZT_TRY(check_image(output, image, frame));
+    ZT_TRY(output->sink->write(output->state, image, frame));
+    output->written = true;
+    output->last_frame = frame;
+    return ZT_OK;
+}
+
+zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t frame) {
+    if (output->failure == ZT_OK) output->failure = write_image(output, image, frame);
+    return output->failure;
+}
+
+zt_status zt_output_close(zt_output **output) {
+    if (!*output) return ZT_OK;
+    bool keep = (*output)->written && (*output)->failure == ZT_OK;
+    zt_status status = (*output)->sink->close((*output)->state, keep);
+    free(*output);
+    *output = NULL;
+    return status;
+}
