@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <zoetrope/zoetrope.h>
@@ -18,10 +19,22 @@ enum { EXIT_MISTAKES = 1, EXIT_USAGE = 2, EXIT_REFUSED = 3, EXIT_INTERRUPTED = 1
 
 /* Set by a signal; read by the rendering threads. */
 static atomic_bool stop_asked;
+static atomic_llong stop_asked_ms;
 
+/* The first interrupt asks the sequence to stop, a later one ends the program. What comes
+ * within half a second is one interrupt: timeout(1), for one, sends it to the program and to
+ * its group. */
 static void ask_to_stop(int signal_number) {
-    (void)signal_number;
-    atomic_store(&stop_asked, true);
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    long long now_ms = (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+    if (!atomic_load(&stop_asked)) {
+        atomic_store(&stop_asked_ms, now_ms);
+        atomic_store(&stop_asked, true);
+    } else if (now_ms - atomic_load(&stop_asked_ms) > 500) {
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
 }
 
 static bool stopped(void *user) {
@@ -29,12 +42,10 @@ static bool stopped(void *user) {
     return atomic_load_explicit(&stop_asked, memory_order_relaxed);
 }
 
-/* The first interrupt stops the sequence, a second one ends the program. One that is ignored,
- * as shells have it for work in the background, stays so. */
+/* A signal that is ignored, as shells have it for work in the background, stays so. */
 static void listen_for_interrupts(void) {
     const int signals[] = {SIGINT, SIGTERM};
-    struct sigaction action = {.sa_handler = ask_to_stop,
-                               .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = SA_RESTART};
     for (int i = 0; i < 2; i++) {
         struct sigaction before;
         if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)

@@ -34,6 +34,8 @@ static void print_duration(char text[TEXT_SIZE], double duration_s) {
 }
 
 zt_progress zt_progress_begin(zt_report *report, int64_t total_count) {
+    if (report->terminal)
+        zt_report_line(report, false, "frames to render: %" PRId64, total_count);
     double now = now_s();
     return (zt_progress){
         .report = report, .begun_s = now, .shown_s = now, .total_count = total_count};
