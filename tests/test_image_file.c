@@ -196,20 +196,17 @@ static void unreadable_files(void **state) {
     for (int i = 0; i < 6; i++) assert_unreadable(paths[i]);
 }
 
-/* The same for PNG, of whose damage libpng itself prints: cut in its middle, and a few bytes
- * that claim to be 2^15 pixels wide and high, with the right checksum. */
-static void damaged_png(void **state) {
+/* A few bytes that claim to be 2^15 pixels wide and high, with the right checksum. */
+static void huge_claims(void **state) {
     (void)state;
     zt_image *image = picture(64, 64, 0);
     write_picture(image, ZT_VIEW_SRGB, "whole.png");
     zt_image_free(&image);
     size_t size;
     char *bytes = file_bytes("whole.png", &size);
-    write_bytes("cut.png", bytes, size / 2);
     memcpy(bytes + 16, "\0\0\x80\0\0\0\x80\0\x08\x02\0\0\0\x4b\x1e\x34\x28", 17);
     write_bytes("huge.png", bytes, size);
     free(bytes);
-    assert_unreadable("cut.png");
     assert_unreadable("huge.png");
 }
 
@@ -221,8 +218,7 @@ int main(void) {
         cmocka_unit_test(no_file_has_a_date),
         cmocka_unit_test(full_disk),
         cmocka_unit_test(unreadable_files),
+        cmocka_unit_test(huge_claims),
     };
-    const struct CMUnitTest printing_tests[] = {cmocka_unit_test(damaged_png)};
-    int failed = cmocka_run_group_tests(tests, files_begin, files_end);
-    return failed + cmocka_run_group_tests(printing_tests, files_begin_printing, files_end);
+    return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -177,7 +177,7 @@ static void unwritable_places(void **state) {
     assert_refused("taken.png", "it is a directory");
     char path[400] = "long/";
     memset(path + 5, 'x', 300);
-    strcpy(path + 305, ".mp4");
+    memcpy(path + 305, ".mp4", 5);
     assert_refused(path, "File name too long");
 }
 

@@ -54,12 +54,13 @@ static film film_open(const char *path) {
     assert_true(avformat_find_stream_info(m.container, NULL) >= 0);
     assert_int_equal(m.container->nb_streams, 1);
     m.stream = m.container->streams[0];
-    for (AVPacket *p = av_packet_alloc(); av_read_frame(m.container, p) >= 0;
-         p = av_packet_alloc()) {
-        assert_true(m.packet_count < FRAMES_MAX - 1);
-        m.packets[m.packet_count++] = p;
-        m.packets[m.packet_count] = NULL;
+    AVPacket *packet = av_packet_alloc();
+    while (av_read_frame(m.container, packet) >= 0) {
+        assert_true(m.packet_count < FRAMES_MAX);
+        m.packets[m.packet_count++] = packet;
+        packet = av_packet_alloc();
     }
+    av_packet_free(&packet);
     return m;
 }
 
@@ -131,14 +132,14 @@ static uint32_t big_endian(const uint8_t *b) {
  * the film to the tick, beginning where the first picture is shown; the same duration for all.
  */
 static void assert_boxes(const char *path, int frame_count, zt_rate rate) {
-    size_t size, moov_at, mdat_at, n, unused;
+    size_t size, moov_at = 0, mdat_at = 0, n = 0, unused = 0;
     char *bytes = file_bytes(path, &size);
     const uint8_t *file = (const uint8_t *)bytes;
     const uint8_t *moov = find_box(file, size, "moov", &n, &moov_at);
     assert_non_null(moov);
     assert_non_null(find_box(file, size, "mdat", &unused, &mdat_at));
     assert_true(moov_at < mdat_at);
-    size_t trak_size, mdia_size;
+    size_t trak_size = 0, mdia_size = 0;
     const uint8_t *mvhd = find_box(moov, n, "mvhd", &unused, NULL);
     const uint8_t *trak = find_box(moov, n, "trak", &trak_size, NULL);
     const uint8_t *edts = find_box(trak, trak_size, "edts", &n, NULL);
@@ -166,7 +167,7 @@ static void assert_rate(zt_rate rate) {
     format.rate = rate;
     write_movie("rate.mp4", &format, frame_count);
     film m = film_open("rate.mp4");
-    AVFrame *frames[FRAMES_MAX];
+    AVFrame *frames[FRAMES_MAX] = {0};
     assert_int_equal(decode(&m, 0, m.packet_count, frames), frame_count);
     for (int f = 0; f < frame_count; f++)
         assert_time(frames[f]->pts, m.stream->time_base, f, rate);
@@ -210,7 +211,7 @@ static void tags(void **state) {
         assert_int_equal(p->color_space, AVCOL_SPC_BT709);
         assert_int_equal(p->color_range, AVCOL_RANGE_MPEG);
         assert_int_equal(p->chroma_location, AVCHROMA_LOC_LEFT);
-        AVFrame *frames[FRAMES_MAX];
+        AVFrame *frames[FRAMES_MAX] = {0};
         assert_int_equal(decode(&m, 0, m.packet_count, frames), 5);
         for (int f = 0; f < 5; f++) {
             assert_int_equal(frames[f]->width, 322);
@@ -248,7 +249,7 @@ static void groups_are_closed(void **state) {
     const int frame_count = 130;
     write_movie("groups.mp4", &small, frame_count);
     film m = film_open("groups.mp4");
-    AVFrame *all[FRAMES_MAX], *some[FRAMES_MAX];
+    AVFrame *all[FRAMES_MAX] = {0}, *some[FRAMES_MAX] = {0};
     assert_int_equal(decode(&m, 0, m.packet_count, all), frame_count);
     assert_true(m.packets[0]->flags & AV_PKT_FLAG_KEY);
     int shown = 0, group_count = 0;
@@ -288,9 +289,10 @@ static double display_value(double linear, zt_view view) {
 
 /* R'G'B' of 0..255 from a yuv420p pixel, by ITU-R BT.709-6, items 3.2 to 3.5. */
 static void yuv_to_rgb(double rgb[3], const AVFrame *frame, int x, int y) {
+    int half_x = x / 2, half_y = y / 2;
     double luma = (frame->data[0][y * frame->linesize[0] + x] - 16) / 219.0;
-    double cb = (frame->data[1][y / 2 * frame->linesize[1] + x / 2] - 128) / 224.0;
-    double cr = (frame->data[2][y / 2 * frame->linesize[2] + x / 2] - 128) / 224.0;
+    double cb = (frame->data[1][half_y * frame->linesize[1] + half_x] - 128) / 224.0;
+    double cr = (frame->data[2][half_y * frame->linesize[2] + half_x] - 128) / 224.0;
     double r = luma + 1.5748 * cr, b = luma + 1.8556 * cb;
     double g = (luma - 0.2126 * r - 0.0722 * b) / 0.7152;
     const double values[] = {r, g, b};
@@ -332,7 +334,7 @@ static void colours(void **state) {
         zt_image_free(&card);
 
         film m = film_open("card.mp4");
-        AVFrame *frames[FRAMES_MAX];
+        AVFrame *frames[FRAMES_MAX] = {0};
         assert_int_equal(decode(&m, 0, m.packet_count, frames), frame_count);
         for (int f = 0; f < frame_count; f++) {
             double worst = worst_difference(frames[f], view);
@@ -358,7 +360,7 @@ static void chroma_is_left(void **state) {
     assert_int_equal(zt_output_close(&output), ZT_OK);
     zt_image_free(&image);
     film m = film_open("left.mp4");
-    AVFrame *frame[FRAMES_MAX];
+    AVFrame *frame[FRAMES_MAX] = {0};
     assert_int_equal(decode(&m, 0, m.packet_count, frame), 1);
     const uint8_t *cr = frame[0]->data[2] + 16 * frame[0]->linesize[2];
     assert_in_range(cr[4], 126, 130);
@@ -438,7 +440,7 @@ static void interrupted_anywhere(void **state) {
     for (int frame_count = 1; frame_count < 60; frame_count += frame_count < 6 ? 1 : 13) {
         write_movie("cut.mp4", &small, frame_count);
         film m = film_open("cut.mp4");
-        AVFrame *frames[FRAMES_MAX];
+        AVFrame *frames[FRAMES_MAX] = {0};
         assert_int_equal(decode(&m, 0, m.packet_count, frames), frame_count);
         for (int f = 0; f < frame_count; f++)
             assert_time(frames[f]->pts, m.stream->time_base, f, small.rate);

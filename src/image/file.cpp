@@ -5,16 +5,14 @@
  * success, and libjpeg prints and ends the process. */
 #include "image/file.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <errno.h>
 #include <memory>
-#include <new>
+#include <stdio.h>
+#include <string.h>
 #include <string>
-#include <vector>
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/fmath.h>
 #include <OpenImageIO/imageio.h>
 
 extern "C" {
@@ -111,20 +109,20 @@ bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view
     }
     std::vector<float> pixels(row_count * row_values);
     for (size_t i = 0; i < pixels.size(); i++)
-        pixels[i] = std::clamp(image->pixels[i / 3 * 4 + i % 3], -half_max, half_max);
+        pixels[i] = OIIO::clamp(image->pixels[i / 3 * 4 + i % 3], -half_max, half_max);
     return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
 zt_status write_bytes(const Bytes &bytes, const char *path, zt_listener listener) {
-    std::FILE *file = std::fopen(path, "wb");
-    if (!file) return refuse(listener, "write", path, std::strerror(errno));
-    bool good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    FILE *file = fopen(path, "wb");
+    if (!file) return refuse(listener, "write", path, strerror(errno));
+    bool good = fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     int error = errno;
-    if (std::fclose(file) != 0 && good) {
+    if (fclose(file) != 0 && good) {
         good = false;
         error = errno;
     }
-    return good ? ZT_OK : refuse(listener, "write", path, std::strerror(error));
+    return good ? ZT_OK : refuse(listener, "write", path, strerror(error));
 }
 
 zt_status write(const zt_image *image, zt_view view, const char *path, const char *name,
@@ -163,7 +161,7 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     const OIIO::ImageSpec spec = input->spec();
     if (spec.depth > 1 || spec.nchannels < 1 || spec.image_pixels() > read_pixels_max)
         return refuse(listener, "read", path, "not a picture of a size that can be read");
-    int channel_count = std::min(spec.nchannels, 4);
+    int channel_count = spec.nchannels < 4 ? spec.nchannels : 4;
     std::vector<float> values(size_t(spec.image_pixels()) * size_t(channel_count));
     if (!input->read_image(0, 0, 0, channel_count, OIIO::TypeDesc::FLOAT, values.data()))
         return refuse(listener, "read", path, input->geterror());
