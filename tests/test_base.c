@@ -1,121 +1,19 @@
-/* Shows that the floor all others stand on does what its headers promise. */
+/* Shows that memory, text, checksums and messages do what their headers promise. */
 #include <limits.h>
 #include <locale.h>
-#include <math.h>
 #include <setjmp.h>
-#include <signal.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
-#include <time.h>
 
 #include <cmocka.h>
 
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/hash.h"
-#include "base/pool.h"
-#include "base/random.h"
 #include "base/text.h"
-#include "base/xform.h"
-
-static const double pi = 3.14159265358979323846;
-
-static void assert_vec(vec3 found, vec3 expected, double tolerance) {
-    if (vec3_max_abs(vec3_sub(found, expected)) <= tolerance) return;
-    fail_msg("(%.17g, %.17g, %.17g) is not (%.17g, %.17g, %.17g)", found.x, found.y, found.z,
-             expected.x, expected.y, expected.z);
-}
-
-/* Lengths are right where their squares would overflow or vanish. */
-static void vectors_of_any_magnitude(void **state) {
-    (void)state;
-    const double magnitudes[] = {1, 1e-300, 1e-160, 1e160, 1e300};
-    for (int i = 0; i < 5; i++) {
-        double m = magnitudes[i];
-        vec3 v = {2 * m, -3 * m, 6 * m};
-        assert_true(fabs(vec3_length(v) / (7 * m) - 1) < 1e-15);
-        assert_vec(vec3_normalize(v), (vec3){2.0 / 7, -3.0 / 7, 6.0 / 7}, 1e-15);
-    }
-    assert_true(vec3_length((vec3){0, 0, 0}) == 0);
-    assert_vec(vec3_normalize((vec3){0, 0, 0}), (vec3){0, 0, 0}, 0);
-    assert_true(isinf(vec3_length((vec3){1, -INFINITY, 0})));
-    assert_true(isnan(vec3_length((vec3){NAN, NAN, NAN})));
-    assert_vec(vec3_cross((vec3){1, 0, 0}, (vec3){0, 1, 0}), (vec3){0, 0, 1}, 0);
-}
-
-/* Quaternions turn counterclockwise, multiply as matrices do, and Euler angles go x, y, z. */
-static void rotations(void **state) {
-    (void)state;
-    const vec3 one = {1, 1, 1}, here = {0, 0, 0};
-    quat quarter = quat_axis_angle((vec3){0, 0, 1}, pi / 2);
-    xform m = xform_place(here, quarter, one);
-    assert_vec(xform_vector(&m, (vec3){1, 0, 0}), (vec3){0, 1, 0}, 1e-15);
-
-    /* y goes to z around x, which goes to x around y, which goes to y around z. */
-    m = xform_place(here, quat_euler_xyz((vec3){pi / 2, pi / 2, pi / 2}), one);
-    assert_vec(xform_vector(&m, (vec3){0, 1, 0}), (vec3){0, 1, 0}, 1e-15);
-    m = xform_place(here, quat_euler_xyz((vec3){pi / 2, pi / 2, 0}), one);
-    assert_vec(xform_vector(&m, (vec3){0, 1, 0}), (vec3){1, 0, 0}, 1e-15);
-
-    quat a = quat_axis_angle(vec3_normalize((vec3){1, 2, 3}), 0.7);
-    quat b = quat_axis_angle(vec3_normalize((vec3){-2, 1, 0.5}), 2.1);
-    xform of_a = xform_place(here, a, one), of_b = xform_place(here, b, one);
-    xform of_product = xform_place(here, quat_mul(a, b), one);
-    xform product = xform_mul(&of_a, &of_b);
-    assert_vec(of_product.x, product.x, 1e-15);
-    assert_vec(of_product.y, product.y, 1e-15);
-    assert_vec(of_product.z, product.z, 1e-15);
-    assert_true(fabs(xform_determinant(&of_a) - 1) < 1e-15);
-
-    quat back = quat_mul(quat_conjugate(a), a);
-    assert_true(fabs(quat_dot(back, quat_identity()) - 1) < 1e-15);
-    assert_true(quat_normalize((quat){0, 0, 0, 0}).w == 1);
-    assert_true(fabs(quat_normalize((quat){0, 0, -5, 0}).y + 1) < 1e-15);
-}
-
-/* Scale, then rotate, then move; and a product means the right factor first. */
-static void placing(void **state) {
-    (void)state;
-    quat quarter = quat_axis_angle((vec3){0, 0, 1}, pi / 2);
-    xform m = xform_place((vec3){10, 20, 30}, quarter, (vec3){2, 3, 4});
-    assert_vec(xform_point(&m, (vec3){1, 1, 1}), (vec3){10 - 3, 20 + 2, 30 + 4}, 1e-14);
-    xform shift = xform_identity();
-    shift.shift = (vec3){1, 0, 0};
-    xform both = xform_mul(&m, &shift);
-    assert_vec(xform_point(&both, (vec3){0, 0, 0}), xform_point(&m, (vec3){1, 0, 0}), 1e-14);
-}
-
-/* A normal stays across its surface and on its outer side, in mirrors and in flattenings too.
- */
-static void normals(void **state) {
-    (void)state;
-    quat turn = quat_axis_angle(vec3_normalize((vec3){1, 1, 0}), 1);
-    const vec3 scales[] = {{1, 2, 3}, {-1, 2, 3}, {-1, -2, 3}, {-1, -2, -3}};
-    vec3 n = vec3_normalize((vec3){1, 2, -1});
-    vec3 s = vec3_cross(n, (vec3){0, 1, 0}), t = vec3_cross(n, s);
-    for (int i = 0; i < 4; i++) {
-        xform m = xform_place((vec3){5, 6, 7}, turn, scales[i]);
-        vec3 moved = xform_normal(&m, n);
-        assert_true(fabs(vec3_dot(moved, xform_vector(&m, s))) < 1e-14);
-        assert_true(fabs(vec3_dot(moved, xform_vector(&m, t))) < 1e-14);
-        assert_true(vec3_dot(moved, xform_vector(&m, n)) > 0.1); /* n itself goes outwards */
-    }
-    xform flat = xform_place((vec3){0, 0, 0}, quat_identity(), (vec3){1, 0, 1});
-    assert_vec(vec3_normalize(xform_normal(&flat, (vec3){0.6, 0.8, 0})), (vec3){0, 1, 0}, 0);
-}
-
-/* The first numbers of SplitMix64 with seed 0, as its authors' program prints them. */
-static void random_numbers(void **state) {
-    (void)state;
-    assert_true(zt_random_key(0, 0) == UINT64_C(0xE220A8397B1DCDAF));
-    assert_true(zt_random_key(0, 1) == UINT64_C(0x6E789E6AA1B965F4));
-    assert_true(zt_random_key(0, 2) == UINT64_C(0x06C45D188009454F));
-}
 
 /* XXH3's checksum of nothing, from its specification. */
 static void checksums(void **state) {
@@ -387,115 +285,8 @@ static void every_status_has_words(void **state) {
     assert_non_null(zt_status_text((zt_status)1000));
 }
 
-enum { TASKS_MAX = 1000, THREADS_MAX = 8 };
-
-typedef struct tally {
-    atomic_int calls[TASKS_MAX];
-    atomic_int at_work[THREADS_MAX]; /* calls under way with this worker number */
-    atomic_int mistakes, unmasked;
-    int thread_count;
-} tally;
-
-static void count_call(void *user, int task, int worker) {
-    tally *t = user;
-    sigset_t mask;
-    if (worker < 0 || worker >= t->thread_count || task < 0 || task >= TASKS_MAX) {
-        t->mistakes++;
-        return;
-    }
-    if (atomic_fetch_add(&t->at_work[worker], 1) != 0) t->mistakes++;
-    t->calls[task]++;
-    pthread_sigmask(SIG_BLOCK, NULL, &mask);
-    if (worker > 0 && !sigismember(&mask, SIGINT)) t->unmasked++;
-    atomic_fetch_sub(&t->at_work[worker], 1);
-}
-
-/* Each task is called once, over many rounds, no worker number twice at a time; and the pool's
- * threads leave signals to the program. */
-static void pool_tasks(void **state) {
-    (void)state;
-    const int thread_counts[] = {1, 2, 3, THREADS_MAX}, task_counts[] = {0, 1, 7, TASKS_MAX};
-    for (int i = 0; i < 4; i++) {
-        zt_pool *pool;
-        assert_int_equal(zt_pool_open(&pool, thread_counts[i]), ZT_OK);
-        assert_int_equal(zt_pool_thread_count(pool), thread_counts[i]);
-        tally t = {.thread_count = thread_counts[i]};
-        int expected[TASKS_MAX] = {0};
-        for (int round = 0; round < 200; round++) {
-            int count = task_counts[round % 4];
-            zt_pool_run(pool, count, count_call, &t);
-            for (int k = 0; k < count; k++) expected[k]++;
-        }
-        for (int k = 0; k < TASKS_MAX; k++) assert_int_equal(t.calls[k], expected[k]);
-        assert_int_equal(t.mistakes, 0);
-        assert_int_equal(t.unmasked, 0);
-        zt_pool_close(&pool);
-        assert_null(pool);
-        zt_pool_close(&pool);
-    }
-    zt_pool *pool;
-    assert_int_equal(zt_pool_open(&pool, 0), ZT_EARGUMENT);
-    assert_null(pool);
-    assert_true(zt_pool_core_count() >= 1);
-}
-
-static void wait_for_all(void *user, int task, int worker) {
-    (void)task, (void)worker;
-    atomic_int *arrived = user;
-    atomic_fetch_add(arrived, 1);
-    while (atomic_load(arrived) < 3) thrd_yield();
-}
-
-/* Three tasks that wait for one another end only where three threads take them. */
-static void pool_is_parallel(void **state) {
-    (void)state;
-    zt_pool *pool;
-    assert_int_equal(zt_pool_open(&pool, 3), ZT_OK);
-    atomic_int arrived = 0;
-    zt_pool_run(pool, 3, wait_for_all, &arrived);
-    assert_int_equal(arrived, 3);
-    zt_pool_close(&pool);
-}
-
-typedef struct diary {
-    atomic_int permits, ended;
-} diary;
-
-static void slow_work(void *user) {
-    diary *d = user;
-    while (d->permits <= d->ended) thrd_yield();
-    nanosleep(&(struct timespec){.tv_nsec = 10 * 1000 * 1000}, NULL);
-    d->ended++;
-}
-
-/* An errand runs behind the caller's back, one at a time; waiting and closing see it done. */
-static void errands(void **state) {
-    (void)state;
-    diary d = {0};
-    zt_errand *errand;
-    assert_int_equal(zt_errand_open(&errand, slow_work, &d), ZT_OK);
-    zt_errand_wait(errand); /* nothing is under way: returns at once */
-    zt_errand_send(errand); /* does not wait for the work, which may not go on yet */
-    assert_int_equal(d.ended, 0);
-    d.permits = 3;
-    zt_errand_send(errand);
-    assert_true(d.ended >= 1); /* but for that of the one before */
-    zt_errand_wait(errand);
-    assert_int_equal(d.ended, 2);
-    zt_errand_send(errand);
-    zt_errand_close(&errand);
-    assert_int_equal(d.ended, 3);
-    assert_null(errand);
-    zt_errand_close(&errand);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors_of_any_magnitude),
-        cmocka_unit_test(rotations),
-        cmocka_unit_test(placing),
-        cmocka_unit_test(normals),
-        cmocka_unit_test(random_numbers),
         cmocka_unit_test(checksums),
         cmocka_unit_test(arena_pieces),
         cmocka_unit_test(arena_large_and_absurd),
@@ -506,9 +297,6 @@ int main(void) {
         cmocka_unit_test(messages),
         cmocka_unit_test(messages_at_the_edge),
         cmocka_unit_test(every_status_has_words),
-        cmocka_unit_test(pool_tasks),
-        cmocka_unit_test(pool_is_parallel),
-        cmocka_unit_test(errands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
