@@ -1,5 +1,4 @@
-/* The program: read a description, open a renderer and an output, render the sequence, close.
- */
+/* The program: read a description, open a renderer and an output, render, close. */
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>

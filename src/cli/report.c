@@ -1,5 +1,6 @@
 #include "cli/report.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
@@ -40,8 +41,7 @@ static void tell(void *user, const zt_message *message) {
         char *large = malloc(length + 1);
         if (large) zt_message_format(text = large, length + 1, message);
     }
-    flockfile(
-        stderr); /* the library writes images on a thread of its own, and may tell from it */
+    flockfile(stderr); /* images are written on a thread of their own, which may tell, too */
     if (message->severity == ZT_ERROR) report->error_count++;
     if (message->severity == ZT_ERROR || !report->quiet) {
         clear_line(report);
@@ -121,17 +121,33 @@ static void print_things(const zt_contents *c) {
     printf("materials  %d\n", c->material_count);
 }
 
+/* How many letters a text in UTF-8 has. */
+static int letter_count(const char *text) {
+    int count = 0;
+    for (; *text; text++) count += ((unsigned char)*text & 0xC0) != 0x80;
+    return count;
+}
+
+/* A name, filled up to `width` letters; one that a stranger wrote does not command the
+ * terminal. */
+static void print_name(const char *name, int width) {
+    int blank_count = width - letter_count(name);
+    for (; *name; name++) putchar(iscntrl((unsigned char)*name) ? '?' : *name);
+    printf("%*s", blank_count, "");
+}
+
 static void print_movements(const zt_animation *animation, int count) {
     int width = 0;
     for (int i = 0; i < count; i++) {
-        int length = (int)strlen(zt_animation_movement(animation, i).name);
-        if (length > width) width = length;
+        int letters = letter_count(zt_animation_movement(animation, i).name);
+        if (letters > width) width = letters;
     }
     for (int i = 0; i < count; i++) {
         zt_movement m = zt_animation_movement(animation, i);
-        printf("%s  %-*s  %s, %d key%s, %.6g s to %.6g s\n", i == 0 ? "moves    " : "         ",
-               width, m.name, m.curve, m.key_count, m.key_count == 1 ? "" : "s", m.first_s,
-               m.last_s);
+        fputs(i == 0 ? "moves      " : "           ", stdout);
+        print_name(m.name, width);
+        printf("  %s, %d key%s, %.6g s to %.6g s\n", m.curve, m.key_count,
+               m.key_count == 1 ? "" : "s", m.first_s, m.last_s);
     }
     if (count == 0) puts("moves      nothing");
 }
