@@ -287,6 +287,8 @@ static const zt_mesh cube = {.positions = cube_positions,
                              .low = {-1, -1, -1},
                              .high = {1, 1, 1}};
 
+static int32_t all_rays[ZT_BATCH]; /* 0, 1, 2 ... */
+
 /* A turned, stretched and moved cube of triangles, met from everywhere: never missed from
  * within, and where the six planes of the cube say. */
 static void test_mesh(void **state) {
@@ -316,7 +318,7 @@ static void test_mesh(void **state) {
             rays.dx[i] = (real)d.x, rays.dy[i] = (real)d.y, rays.dz[i] = (real)d.z;
             rays.t[i] = REAL_INFINITY, rays.hit[i] = -1;
         }
-        zt_meshes_intersect(meshes, &rays);
+        zt_meshes_intersect(meshes, &rays, all_rays, rays.count);
         const zt_placement *p = &object->placement;
         xform back = xform_place((vec3){0, 0, 0}, quat_conjugate(p->rotation), (vec3){1, 1, 1});
         vec3 o = xform_vector(&back, vec3_scale(p->position, -1));
@@ -363,7 +365,7 @@ static void test_ties(void **state) {
         zt_tracer tracer;
         assert_int_equal(zt_tracer_prepare(&tracer, &s.scene, meshes, &arena), ZT_OK);
         zt_batch rays = {.count = 1, .dx = {.1f}, .dz = {-1}, .t = {4}, .hit = {!!mesh_first}};
-        zt_meshes_intersect(meshes, &rays);
+        zt_meshes_intersect(meshes, &rays, all_rays, rays.count);
         assert_int_equal(rays.hit[0], 0);
         zt_arena_free(&arena);
     }
@@ -371,6 +373,7 @@ static void test_ties(void **state) {
 }
 
 int main(void) {
+    for (int i = 0; i < ZT_BATCH; i++) all_rays[i] = i;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sphere),   cmocka_unit_test(test_sphere_limb),
         cmocka_unit_test(test_plane),    cmocka_unit_test(test_ellipsoid),

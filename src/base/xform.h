@@ -44,6 +44,17 @@ static inline double xform_determinant(const xform *m) {
     return vec3_dot(vec3_cross(m->x, m->y), m->z);
 }
 
+/* What undoes a transform. Not finite where the linear part is singular. */
+static inline xform xform_inverse(const xform *m) {
+    double scale = 1 / xform_determinant(m);
+    /* The rows of the inverse are the cross products of the columns. */
+    vec3 r = vec3_scale(vec3_cross(m->y, m->z), scale);
+    vec3 s = vec3_scale(vec3_cross(m->z, m->x), scale);
+    vec3 t = vec3_scale(vec3_cross(m->x, m->y), scale);
+    vec3 back = {-vec3_dot(r, m->shift), -vec3_dot(s, m->shift), -vec3_dot(t, m->shift)};
+    return (xform){{r.x, s.x, t.x}, {r.y, s.y, t.y}, {r.z, s.z, t.z}, back};
+}
+
 /* Takes a normal of a surface to the normal of the transformed surface, not of unit length: the
  * cofactors of the linear part, which exist where the inverse does not. A mirroring transform
  * keeps the side: outside stays outside. */

@@ -13,7 +13,8 @@ static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
 struct zt_render_work {
     zt_classic_trace *trace;
     struct render_thread {
-        float x[ZT_BATCH], y[ZT_BATCH]; /* places in the picture, pixels */
+        int32_t column[ZT_BATCH], row[ZT_BATCH]; /* the pixel of each ray */
+        float x[ZT_BATCH], y[ZT_BATCH];          /* its place in the picture, pixels */
         zt_batch rays;
         zt_radiance light, sum;
         int32_t taken[ZT_BATCH]; /* samples in the sum */
@@ -47,17 +48,28 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
     return work->threads ? ZT_OK : ZT_EMEMORY;
 }
 
-static void make_rays(struct render_thread *own, const zt_render_job *job, tile area,
+/* Numbers the pixels of a tile in blocks of 4 x 4, so that rays that travel in one packet are
+ * close together in both directions; those beyond the edge of the picture are left out. */
+static int list_pixels(struct render_thread *own, tile area) {
+    int count = 0;
+    for (int i = 0; i < ZT_BATCH; i++) {
+        int x = (i >> 4 & 3) * 4 + (i & 3), y = (i >> 6) * 4 + (i >> 2 & 3);
+        own->column[count] = area.x + x;
+        own->row[count] = area.y + y;
+        count += x < area.width && y < area.height;
+    }
+    return count;
+}
+
+static void make_rays(struct render_thread *own, const zt_render_job *job, int count,
                       int sample) {
-    int i = 0;
-    for (int y = area.y; y < area.y + area.height; y++)
-        for (int x = area.x; x < area.x + area.width; x++, i++) {
-            float u, v;
-            zt_sample_pixel(&u, &v, x, y, sample, job->samples);
-            own->x[i] = (float)x + u;
-            own->y[i] = (float)y + v;
-        }
-    zt_lens_rays(&own->rays, &job->lens, own->x, own->y, i);
+    for (int i = 0; i < count; i++) {
+        float u, v;
+        zt_sample_pixel(&u, &v, own->column[i], own->row[i], sample, job->samples);
+        own->x[i] = (float)own->column[i] + u;
+        own->y[i] = (float)own->row[i] + v;
+    }
+    zt_lens_rays(&own->rays, &job->lens, own->x, own->y, count);
 }
 
 /* Adds a sample of each pixel to the sums; returns how many were not finite. */
@@ -77,17 +89,15 @@ static int add_samples(struct render_thread *own, int count) {
     return left_out;
 }
 
-static void fill_pixels(zt_image *image, const struct render_thread *own, tile area) {
-    int i = 0;
-    for (int y = area.y; y < area.y + area.height; y++) {
-        float *pixel = image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)area.x);
-        for (int x = 0; x < area.width; x++, i++, pixel += 4) {
-            real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
-            pixel[0] = own->sum.r[i] * share;
-            pixel[1] = own->sum.g[i] * share;
-            pixel[2] = own->sum.b[i] * share;
-            pixel[3] = 1;
-        }
+static void fill_pixels(zt_image *image, const struct render_thread *own, int count) {
+    for (int i = 0; i < count; i++) {
+        size_t at = (size_t)own->row[i] * (size_t)image->width + (size_t)own->column[i];
+        float *pixel = image->pixels + 4 * at;
+        real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
+        pixel[0] = own->sum.r[i] * share;
+        pixel[1] = own->sum.g[i] * share;
+        pixel[2] = own->sum.b[i] * share;
+        pixel[3] = 1;
     }
 }
 
@@ -101,18 +111,17 @@ static void render_tile(void *user, int index, int worker) {
     struct render_thread *own = &f->work->threads[worker];
     memset(&own->sum, 0, sizeof own->sum);
     memset(own->taken, 0, sizeof own->taken);
-    int left_out = 0;
+    int left_out = 0, count = list_pixels(own, area);
     for (int sample = 0; sample < job->samples; sample++) {
         if (job->stopped && job->stopped(job->user)) {
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
             return;
         }
-        make_rays(own, job, area, sample);
-        int count = own->rays.count;
+        make_rays(own, job, count, sample);
         f->work->trace(&own->light, job->tracer, &own->rays, &own->classic);
         left_out += add_samples(own, count);
     }
-    fill_pixels(f->image, own, area);
+    fill_pixels(f->image, own, count);
     if (left_out) atomic_fetch_add_explicit(&f->left_out_count, left_out, memory_order_relaxed);
 }
 

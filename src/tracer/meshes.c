@@ -10,7 +10,7 @@
 
 #include "base/diag.h"
 
-enum { LANES = 16 };
+enum { LANES = 16, HULLS_MAX = 32, PARTS_MAX = 128 };
 
 /* How much further than the nearest hit so far Embree looks, for the roundings of its
  * distances. */
@@ -28,7 +28,8 @@ struct zt_meshes {
     int32_t mesh_count;
     zt_listener listener;
     RTCDevice device;
-    RTCScene *built; /* one for each mesh; NULL until it is needed */
+    RTCScene *built; /* one for each mesh; NULL until it is needed, as are the hulls */
+    zt_hull **hulls;
     RTCScene top;
     /* Instance number i of `top` shows placed[i]; those from placed_count on are disabled. */
     placed_mesh *placed;
@@ -36,6 +37,9 @@ struct zt_meshes {
     int32_t placed_count, instance_count, instance_capacity;
     int32_t *placed_of_primitive;
     int32_t primitive_capacity;
+    /* One for each placed mesh; with more than HULLS_MAX the last one holds all the rest. */
+    zt_placed_hull placed_hulls[HULLS_MAX];
+    zt_box rest;
 };
 
 static void tell_device_error(void *user, enum RTCError code, const char *text) {
@@ -53,8 +57,9 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
     m->mesh_count = mesh_count;
     m->listener = listener;
     m->built = calloc((size_t)mesh_count + 1, sizeof(RTCScene));
-    if (!m->built) {
-        free(m);
+    m->hulls = calloc((size_t)mesh_count + 1, sizeof *m->hulls);
+    if (!m->built || !m->hulls) {
+        zt_meshes_close(&m);
         return ZT_EMEMORY;
     }
     *out = m;
@@ -66,10 +71,13 @@ void zt_meshes_close(zt_meshes **slot) {
     if (!m) return;
     for (int32_t i = 0; i < m->instance_count; i++) rtcReleaseGeometry(m->instances[i]);
     if (m->top) rtcReleaseScene(m->top);
-    for (int32_t i = 0; i < m->mesh_count; i++)
-        if (m->built[i]) rtcReleaseScene(m->built[i]);
+    for (int32_t i = 0; i < m->mesh_count; i++) {
+        if (m->built && m->built[i]) rtcReleaseScene(m->built[i]);
+        if (m->hulls) free(m->hulls[i]);
+    }
     if (m->device) rtcReleaseDevice(m->device);
     free(m->built);
+    free(m->hulls);
     free(m->placed);
     free(m->instances);
     free(m->placed_of_primitive);
@@ -92,6 +100,16 @@ static zt_status start_device(zt_meshes *m) {
     if (!m->top) return ZT_EMEMORY;
     rtcSetSceneFlags(m->top, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     return ZT_OK;
+}
+
+static zt_status build_hull(zt_meshes *m, int32_t index) {
+    const zt_mesh *mesh = &m->meshes[index];
+    int32_t *order = malloc((size_t)mesh->triangle_count * sizeof *order + 1);
+    m->hulls[index] = malloc(sizeof **m->hulls);
+    bool room = order && m->hulls[index];
+    if (room) zt_hull_build(m->hulls[index], mesh, order);
+    free(order);
+    return room ? ZT_OK : ZT_EMEMORY;
 }
 
 static zt_status build_mesh(zt_meshes *m, int32_t index) {
@@ -144,7 +162,10 @@ static zt_status reach_primitive(zt_meshes *m, int32_t primitive) {
 
 zt_status zt_meshes_place(zt_meshes *m, int32_t mesh, int32_t primitive, const xform *place) {
     if (!m->device) ZT_TRY(start_device(m));
-    if (!m->built[mesh]) ZT_TRY(build_mesh(m, mesh));
+    if (!m->built[mesh]) {
+        ZT_TRY(build_hull(m, mesh));
+        ZT_TRY(build_mesh(m, mesh));
+    }
     if (m->placed_count == m->instance_count) ZT_TRY(grow_instances(m));
     ZT_TRY(reach_primitive(m, primitive));
     const zt_mesh *numbers = &m->meshes[mesh];
@@ -168,11 +189,81 @@ zt_status zt_meshes_place(zt_meshes *m, int32_t mesh, int32_t primitive, const x
     return ZT_OK;
 }
 
+static real3 row_of(double x, double y, double z) { return (real3){(real)x, (real)y, (real)z}; }
+
+/* The largest number in a box. */
+static double box_size(const zt_box *box) {
+    vec3 low = {(double)box->low.x, (double)box->low.y, (double)box->low.z};
+    vec3 high = {(double)box->high.x, (double)box->high.y, (double)box->high.z};
+    return fmax(vec3_max_abs(low), vec3_max_abs(high));
+}
+
+/* The hull of a placed mesh, with the parts of one level. */
+static zt_placed_hull place_hull(const zt_meshes *m, const placed_mesh *placed, int level) {
+    const zt_hull *hull = m->hulls[placed->mesh - m->meshes];
+    xform place = placed->place;
+    place.shift = xform_point(&place, placed->mesh->origin);
+    xform back = xform_inverse(&place);
+    double reach =
+        3 * fmax(vec3_max_abs(back.x), fmax(vec3_max_abs(back.y), vec3_max_abs(back.z)));
+    return (zt_placed_hull){
+        .rows = {row_of(back.x.x, back.y.x, back.z.x), row_of(back.x.y, back.y.y, back.z.y),
+                 row_of(back.x.z, back.y.z, back.z.z)},
+        .at = row_of(back.shift.x, back.shift.y, back.shift.z),
+        .reach = (real)reach,
+        .size = (real)(reach * vec3_max_abs(place.shift) + box_size(&hull->boxes[1])),
+        .whole = &hull->boxes[1],
+        .parts = &hull->boxes[1 << level],
+        .part_count = 1 << level};
+}
+
+/* Grows the box of the rest by a placed mesh: its bounds, turned into the space of the camera.
+ */
+static void add_to_rest(zt_box *rest, const placed_mesh *placed) {
+    const xform *m = &placed->place;
+    vec3 half = vec3_scale(vec3_sub(placed->mesh->high, placed->mesh->low), 0.5);
+    vec3 center = xform_point(m, vec3_add(placed->mesh->low, half));
+    vec3 reach = {fabs(m->x.x) * half.x + fabs(m->y.x) * half.y + fabs(m->z.x) * half.z,
+                  fabs(m->x.y) * half.x + fabs(m->y.y) * half.y + fabs(m->z.y) * half.z,
+                  fabs(m->x.z) * half.x + fabs(m->y.z) * half.y + fabs(m->z.z) * half.z};
+    vec3 low = vec3_sub(center, reach), high = vec3_add(center, reach);
+    rest->low = (real3){fminf(rest->low.x, (real)low.x), fminf(rest->low.y, (real)low.y),
+                        fminf(rest->low.z, (real)low.z)};
+    rest->high = (real3){fmaxf(rest->high.x, (real)high.x), fmaxf(rest->high.y, (real)high.y),
+                         fmaxf(rest->high.z, (real)high.z)};
+}
+
+static void place_hulls(zt_meshes *m) {
+    bool crowd = m->placed_count > HULLS_MAX;
+    int32_t single_count = crowd ? HULLS_MAX - 1 : m->placed_count;
+    int level = 0;
+    while (level + 1 < ZT_HULL_LEVELS && (single_count << (level + 1)) <= PARTS_MAX) level++;
+    for (int32_t i = 0; i < single_count; i++)
+        m->placed_hulls[i] = place_hull(m, &m->placed[i], level);
+    if (!crowd) return;
+    m->rest = (zt_box){{REAL_INFINITY, REAL_INFINITY, REAL_INFINITY},
+                       {-REAL_INFINITY, -REAL_INFINITY, -REAL_INFINITY}};
+    for (int32_t i = single_count; i < m->placed_count; i++)
+        add_to_rest(&m->rest, &m->placed[i]);
+    m->placed_hulls[single_count] = (zt_placed_hull){.rows = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                     .reach = 1,
+                                                     .size = (real)box_size(&m->rest),
+                                                     .whole = &m->rest,
+                                                     .parts = &m->rest,
+                                                     .part_count = 1};
+}
+
 zt_status zt_meshes_commit(zt_meshes *m) {
+    place_hulls(m);
     for (int32_t i = m->placed_count; i < m->instance_count; i++)
         rtcDisableGeometry(m->instances[i]);
     rtcCommitScene(m->top);
     return rtcGetDeviceError(m->device) == RTC_ERROR_NONE ? ZT_OK : ZT_EMEMORY;
+}
+
+int zt_meshes_hulls(const zt_placed_hull **hulls, const zt_meshes *m) {
+    *hulls = m->placed_hulls;
+    return m->placed_count < HULLS_MAX ? m->placed_count : HULLS_MAX;
 }
 
 static void corners(vec3 *corner, const placed_mesh *placed, int32_t triangle) {
@@ -193,13 +284,13 @@ static real plane_distance(const zt_batch *rays, int i, const placed_mesh *place
     return t > 0 && t <= (double)embree_distance * 1.001 ? (real)t : embree_distance;
 }
 
-/* Fills a packet with the rays from `first` on, which look `reach` times as far as the batch's
- * t; lanes beyond the batch are not valid. */
-static void load_packet(struct RTCRay16 *packet, int *valid, const zt_batch *rays, int first,
-                        real reach) {
+/* Fills a packet with listed rays, `count` of them, which look `reach` times as far as the
+ * batch's t. Lanes beyond repeat the last ray and are not valid. */
+static void load_packet(struct RTCRay16 *packet, int *valid, const zt_batch *rays,
+                        const int32_t *list, int count, real reach) {
     for (int lane = 0; lane < LANES; lane++) {
-        int i = first + lane;
-        valid[lane] = i < rays->count ? -1 : 0;
+        int i = list[lane < count ? lane : count - 1];
+        valid[lane] = lane < count ? -1 : 0;
         packet->org_x[lane] = rays->ox[i];
         packet->org_y[lane] = rays->oy[i];
         packet->org_z[lane] = rays->oz[i];
@@ -227,13 +318,14 @@ static void take_hit(const zt_meshes *m, zt_batch *rays, int i,
     rays->part[i] = triangle;
 }
 
-void zt_meshes_intersect(const zt_meshes *m, zt_batch *rays) {
+void zt_meshes_intersect(const zt_meshes *m, zt_batch *rays, const int32_t *list,
+                         int list_count) {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    for (int first = 0; first < rays->count; first += LANES) {
+    for (int first = 0; first < list_count; first += LANES) {
         alignas(64) int valid[LANES];
         alignas(64) struct RTCRayHit16 packet;
-        load_packet(&packet.ray, valid, rays, first, LOOK_FURTHER);
+        load_packet(&packet.ray, valid, rays, list + first, list_count - first, LOOK_FURTHER);
         for (int lane = 0; lane < LANES; lane++) {
             packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
             packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
@@ -241,26 +333,21 @@ void zt_meshes_intersect(const zt_meshes *m, zt_batch *rays) {
         rtcIntersect16(valid, m->top, &context, &packet);
         for (int lane = 0; lane < LANES; lane++)
             if (valid[lane] && packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID)
-                take_hit(m, rays, first + lane, &packet, lane);
+                take_hit(m, rays, list[first + lane], &packet, lane);
     }
 }
 
-void zt_meshes_occlude(const zt_meshes *m, zt_batch *rays) {
+void zt_meshes_occlude(const zt_meshes *m, zt_batch *rays, const int32_t *list,
+                       int list_count) {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    for (int first = 0; first < rays->count; first += LANES) {
+    for (int first = 0; first < list_count; first += LANES) {
         alignas(64) int valid[LANES];
         alignas(64) struct RTCRay16 packet;
-        load_packet(&packet, valid, rays, first, 1);
-        int wanted = 0;
-        for (int lane = 0; lane < LANES; lane++) {
-            if (rays->hit[first + lane] >= 0) valid[lane] = 0;
-            wanted |= valid[lane];
-        }
-        if (!wanted) continue;
+        load_packet(&packet, valid, rays, list + first, list_count - first, 1);
         rtcOccluded16(valid, m->top, &context, &packet);
         for (int lane = 0; lane < LANES; lane++)
-            if (valid[lane] && packet.tfar[lane] < 0) rays->hit[first + lane] = 0;
+            if (valid[lane] && packet.tfar[lane] < 0) rays->hit[list[first + lane]] = 0;
     }
 }
 

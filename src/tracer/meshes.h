@@ -11,6 +11,7 @@
 
 #include "base/xform.h"
 #include "scene/scene.h"
+#include "tracer/hull.h"
 #include "tracer/primitives.h"
 #include "tracer/ray.h"
 
@@ -32,13 +33,30 @@ zt_status zt_meshes_place(zt_meshes *meshes, int32_t mesh, int32_t primitive,
 /* Makes the placed meshes ready for rays. */
 zt_status zt_meshes_commit(zt_meshes *meshes);
 
-/* Finds hits nearer than the batch's `t`, and equally near ones of primitives before the
- * batch's `hit`. Distances are those of the plane of the triangle found, in double precision.
- */
-void zt_meshes_intersect(const zt_meshes *meshes, zt_batch *rays);
+/* The hull of a placed mesh: boxes in the mesh's space, and the way there. A point p relative
+ * to the camera is at (row . p) + at, give or take rounding * (reach * max |p| + size). */
+typedef struct zt_placed_hull {
+    real3 rows[3];
+    real3 at;
+    real reach, size;
+    const zt_box *whole;
+    const zt_box *parts;
+    int part_count;
+} zt_placed_hull;
 
-/* Sets `hit` to an index of the primitive met before `t` for rays that have none (-1) yet. */
-void zt_meshes_occlude(const zt_meshes *meshes, zt_batch *rays);
+/* Hulls that hold all that is placed; few, however many meshes there are. Rays that meet none
+ * of them need not be asked about below. Valid until the next frame begins. */
+int zt_meshes_hulls(const zt_placed_hull **hulls, const zt_meshes *meshes);
+
+/* For the rays whose numbers are listed: finds hits nearer than the batch's `t`, and equally
+ * near ones of primitives before the batch's `hit`. Distances are those of the plane of the
+ * triangle found, in double precision. */
+void zt_meshes_intersect(const zt_meshes *meshes, zt_batch *rays, const int32_t *list,
+                         int list_count);
+
+/* For the rays whose numbers are listed: sets `hit` to 0 where a triangle is met before `t`. */
+void zt_meshes_occlude(const zt_meshes *meshes, zt_batch *rays, const int32_t *list,
+                       int list_count);
 
 /* The flat normal (unit, to either side) and a corner of triangle `part` of the placed
  * `primitive`, and the largest coordinate that its arithmetic deals with. */

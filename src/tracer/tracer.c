@@ -46,13 +46,12 @@ static bool prepare_plane(zt_primitive *primitive, zt_surface *surface, const zt
 
 static bool prepare_ellipsoid(zt_primitive *primitive, zt_surface *surface,
                               const zt_sphere *sphere, const xform *world) {
-    double determinant = xform_determinant(world);
     vec3 center = xform_point(world, sphere->center);
-    double scale = 1 / (determinant * sphere->radius);
-    /* The inverse by cofactors: its rows are the cross products of the columns. */
-    vec3 rows[3] = {vec3_scale(vec3_cross(world->y, world->z), scale),
-                    vec3_scale(vec3_cross(world->z, world->x), scale),
-                    vec3_scale(vec3_cross(world->x, world->y), scale)};
+    xform unit = xform_inverse(world);
+    double shrink = 1 / sphere->radius;
+    vec3 rows[3] = {vec3_scale((vec3){unit.x.x, unit.y.x, unit.z.x}, shrink),
+                    vec3_scale((vec3){unit.x.y, unit.y.y, unit.z.y}, shrink),
+                    vec3_scale((vec3){unit.x.z, unit.y.z, unit.z.z}, shrink)};
     if (!finite3(center) || !finite3(rows[0]) || !finite3(rows[1]) || !finite3(rows[2]))
         return false;
     primitive->kind = ZT_PRIMITIVE_ELLIPSOID;
