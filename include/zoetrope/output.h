@@ -23,14 +23,17 @@ typedef struct zt_output_format {
 } zt_output_format;
 
 /* Opens an output, chosen by the name of `target`:
- *   film.mp4                          a movie, H.264
- *   frames.####.png, frames.%04d.exr  numbered images (also .tif .jpg); one # for each digit,
- * and more digits where the number needs them image.png                         one image; a
- * second one is refused film.hash                         a line for each frame: its number,
- * its size, and the XXH3 128-bit checksum of its float pixels All that can be refused is
- * refused here, before the first image is made: unknown names, odd sizes for a movie, a
- * directory that cannot be written. Missing directories are made. Nothing appears under its
- * final name before it is complete. */
+ *
+ * - film.mp4: a movie, H.264.
+ * - frames.####.png, frames.%04d.exr: numbered images, also .tif .tiff .jpg .jpeg; one # for
+ * each digit, and more digits where the number needs them.
+ * - image.png: one image; a second one is refused.
+ * - film.hash: a line for each frame, with its number, its size, and the XXH3 128-bit checksum
+ * of its float pixels, in fixed columns.
+ *
+ * All that can be refused is refused here, before the first image is made: unknown names, odd
+ * sizes for a movie, a directory that cannot be written. Missing directories are made. Nothing
+ * appears under its final name before it is complete. */
 zt_status zt_output_open(zt_output **output, const char *target, const zt_output_format *format,
                          zt_listener listener);
 

@@ -18,10 +18,10 @@
 #include "encode/sink.h"
 #include "image/develop.h"
 
-/* Measured at 1280x720 with a ray-traced scene of spheres on a checkered floor: "veryfast"
- * takes 13 ms of one core a frame, "medium" 27 (and 70 where the picture is rough), for files
- * of the same size and 48.9 dB against 50.3, both far beyond what is seen. Four threads take 10
- * % more of the cores than one does. */
+/* Measured at 1280x720 with ray-traced spheres on a checkered floor: "veryfast" takes 13 ms of
+ * one core a frame, "medium" 27 (and 70 where the picture is rough); the files are as large,
+ * and 48.9 dB against 50.3 is not seen. Four threads take a tenth more of the cores than one
+ * does. */
 static const char preset[] = "veryfast", quality[] = "18" /* CRF */;
 enum { THREAD_COUNT = 4, GOP_S = 2, GOP_FRAMES_MAX = 250, TIMESCALE_MIN = 10000 };
 
@@ -38,7 +38,8 @@ typedef struct movie {
     zt_listener listener;
 } movie;
 
-/* What libav last complained of in this thread. It would print it otherwise. */
+/* What libav last complained of in this thread. It would print it otherwise; there is one
+ * callback for the whole process. */
 static thread_local char complaint[256];
 
 static void hear_libav(void *context, int level, const char *format, va_list arguments) {
@@ -52,14 +53,13 @@ static once_flag listening_once = ONCE_FLAG_INIT;
 static void listen_to_libav(void) { av_log_set_callback(hear_libav); }
 
 static zt_status refuse(const movie *m, int error) {
-    const char *what = error == AVERROR(ENOMEM) ? "out of memory" : av_err2str(error);
-    zt_tell(m->listener, ZT_ERROR, "cannot write %s: %s%s%s", m->aside.target, what,
-            *complaint ? ": " : "", complaint);
-    *complaint = '\0';
-    return error == AVERROR(ENOMEM) ? ZT_EMEMORY : ZT_EFILE;
+    if (error == AVERROR(ENOMEM)) return ZT_EMEMORY;
+    zt_tell(m->listener, ZT_ERROR, "cannot write %s: %s%s%s", m->aside.target,
+            av_err2str(error), *complaint ? ": " : "", complaint);
+    return ZT_EFILE;
 }
 
-/* Hands a libav failure up as a status, after telling it. */
+/* Hands a failure of libav up as a status, after telling it. */
 #define AV_TRY(m, call)                                                                        \
     do {                                                                                       \
         int av_try_error = (call);                                                             \
@@ -81,11 +81,11 @@ static zt_status check_size(const char *target, const zt_output_format *format,
 }
 
 /* What the numbers mean, for decoders: BT.709 primaries and matrix, in 16..235 (240), chroma
- * sited left. The transfer tag is BT.709's, too, in both views, although the numbers of the
- * sRGB view are exactly sRGB's (tag 13): most players show the numbers of a 709 film as they
- * are, which for pictures made for an sRGB display is right, while 13 is rare enough in films
- * for some programs to take it as unknown. Colour-managed players differ by a hair's breadth in
- * the shadows, the same as with every other film from an sRGB display. */
+ * sited left. The transfer tag is BT.709's in both views, although the sRGB view's numbers are
+ * sRGB's (tag 13): nearly all players show the numbers of a 709 film as they are, which on an
+ * sRGB display is right, while 13 is so rare in films that some programs take it for unknown.
+ * The few that take 709 at its word show the shadows a little lighter, as of all films made on
+ * such a display. */
 static void tag_frame(AVFrame *frame) {
     frame->color_primaries = AVCOL_PRI_BT709;
     frame->color_trc = AVCOL_TRC_BT709;
@@ -262,7 +262,7 @@ static zt_status write_movie(void *state, const zt_image *image, int64_t frame) 
     *complaint = '\0';
     zt_develop_rgb8(m->rgb->data[0], (size_t)m->rgb->linesize[0], image, m->view, 0,
                     image->height);
-    AV_TRY(m, av_frame_make_writable(m->yuv));
+    AV_TRY(m, av_frame_make_writable(m->yuv)); /* a copy, should the encoder still hold it */
     const uint8_t *const *rgb = (const uint8_t *const *)m->rgb->data;
     AV_TRY(m, sws_scale(m->converter, rgb, m->rgb->linesize, 0, image->height, m->yuv->data,
                         m->yuv->linesize));
