@@ -132,10 +132,11 @@ zt_status write(const zt_image *image, zt_view view, const char *path, const cha
         if (zt_text_ends_with(name, *known, true)) ending = *known;
     if (ending.empty())
         return refuse(listener, "write", path, "no picture format has this name's ending");
+    Bytes bytes;
+    OIIO::Filesystem::IOVecOutput memory(
+        bytes); /* outlives `output`, which may write at its end */
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending.substr(1));
     if (!output) return refuse(listener, "write", path, OIIO::geterror());
-    Bytes bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
     if (!output->set_ioproxy(&memory) || !output->open(path, spec_for(image, ending)) ||
         !write_pixels(*output, image, view) || !output->close())
         return refuse(listener, "write", path, output->geterror());
