@@ -1,154 +1,22 @@
-/* The classic integrator, one source for each width of instructions: CMake compiles it once for
- * each, with ZT_ISA as the ending of its only public name. Loops run over structures of arrays,
- * without branches, so that the compiler makes them as wide as it may; without fused operations
- * and reordering, all widths give the same bits.
- *
- * A step of the loop: intersect the batch, gather what it hit, light it, mirror it, again. */
+/* The classic integrator. A step of its loop: intersect the batch, gather what it hit, light
+ * it, mirror it, again. Compiled once for each width of instructions (tracer/isa.h). */
 #include "tracer/classic.h"
 
 #include <math.h>
 #include <string.h>
 
-#define PASTE(a, b)    a##b
-#define NAME(isa)      PASTE(zt_classic_trace_, isa)
-#define WIDE_LOOP      _Pragma("GCC ivdep")
-#define ZT_CLASSIC_ISA NAME(ZT_ISA)
+#include "tracer/intersect.h"
+#include "tracer/isa.h"
+
+#define intersect ZT_ISA_NAME(zt_intersect)
+#define occlude   ZT_ISA_NAME(zt_occlude)
 
 /* A point is projected onto its surface, which leaves a few roundings of the largest number in
  * the arithmetic between the two; the next ray's own intersection adds about as many again.
  * Twice what they sum up to (16) is a bound that holds for planes, spheres and triangles. */
 #define MARGIN_ROUNDINGS 32
 
-zt_classic_trace ZT_CLASSIC_ISA;
-
-static real real_max(real a, real b) { return a > b ? a : b; }
-static real real_min(real a, real b) { return a < b ? a : b; }
-
-/* A loop for each kind of primitive. What is nearer by nothing leaves the earlier hit. */
-#define DEFINE_LOOPS(kind)                                                                     \
-    static void kind##_intersect(zt_batch *restrict rays, const zt_primitive *p,               \
-                                 int32_t index, int count) {                                   \
-        WIDE_LOOP for (int i = 0; i < count; i++) {                                            \
-            real t = zt_##kind##_distance(p, rays->ox[i], rays->oy[i], rays->oz[i],            \
-                                          rays->dx[i], rays->dy[i], rays->dz[i]);              \
-            real nearest = rays->t[i];                                                         \
-            int32_t hit = rays->hit[i];                                                        \
-            rays->t[i] = t < nearest ? t : nearest;                                            \
-            rays->hit[i] = t < nearest ? index : hit;                                          \
-        }                                                                                      \
-    }
-DEFINE_LOOPS(plane)
-DEFINE_LOOPS(sphere)
-DEFINE_LOOPS(ellipsoid)
-DEFINE_LOOPS(triangle)
-
-static void intersect_analytic(zt_batch *rays, const zt_tracer *tracer) {
-    int count = zt_batch_padded(rays->count);
-    for (int32_t index = 0; index < tracer->primitive_count; index++) {
-        const zt_primitive *p = &tracer->primitives[index];
-        switch (p->kind) {
-        case ZT_PRIMITIVE_PLANE:
-            plane_intersect(rays, p, index, count);
-            break;
-        case ZT_PRIMITIVE_SPHERE:
-            sphere_intersect(rays, p, index, count);
-            break;
-        case ZT_PRIMITIVE_ELLIPSOID:
-            ellipsoid_intersect(rays, p, index, count);
-            break;
-        case ZT_PRIMITIVE_TRIANGLE:
-            triangle_intersect(rays, p, index, count);
-            break;
-        case ZT_PRIMITIVE_MESH:
-            break;
-        }
-    }
-}
-
-/* ZT_BATCH_LANES rays in the space of a hull: origins, one over directions, how far to look,
- * and how much room the boxes need for the roundings of all that. */
-typedef struct lanes {
-    alignas(64) real ox[ZT_BATCH_LANES];
-    alignas(64) real oy[ZT_BATCH_LANES];
-    alignas(64) real oz[ZT_BATCH_LANES];
-    alignas(64) real kx[ZT_BATCH_LANES];
-    alignas(64) real ky[ZT_BATCH_LANES];
-    alignas(64) real kz[ZT_BATCH_LANES];
-    alignas(64) real t[ZT_BATCH_LANES];
-    alignas(64) real room[ZT_BATCH_LANES];
-    alignas(64) int32_t meets[ZT_BATCH_LANES];
-} lanes;
-
-static void enter_hull(lanes *restrict l, const zt_batch *restrict rays, int first,
-                       const zt_placed_hull *hull) {
-    const real3 rx = hull->rows[0], ry = hull->rows[1], rz = hull->rows[2], at = hull->at;
-    const real reach = hull->reach, size = hull->size;
-    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
-        real ox = rays->ox[first + j], oy = rays->oy[first + j], oz = rays->oz[first + j];
-        real dx = rays->dx[first + j], dy = rays->dy[first + j], dz = rays->dz[first + j];
-        l->ox[j] = real_dot(rx.x, rx.y, rx.z, ox, oy, oz) + at.x;
-        l->oy[j] = real_dot(ry.x, ry.y, ry.z, ox, oy, oz) + at.y;
-        l->oz[j] = real_dot(rz.x, rz.y, rz.z, ox, oy, oz) + at.z;
-        l->kx[j] = 1 / real_dot(rx.x, rx.y, rx.z, dx, dy, dz);
-        l->ky[j] = 1 / real_dot(ry.x, ry.y, ry.z, dx, dy, dz);
-        l->kz[j] = 1 / real_dot(rz.x, rz.y, rz.z, dx, dy, dz);
-        l->t[j] = rays->t[first + j];
-        real largest = real_max(real_max(fabsf(ox), fabsf(oy)), fabsf(oz));
-        l->room[j] = 32 * REAL_ROUNDING * (reach * largest + size);
-        l->meets[j] = 0;
-    }
-}
-
-/* Adds to `meets` the rays that meet a box, grown by their room, before their t; a doubt (what
- * is no number compares as false) counts as meeting. Distances to the sides may each be off by
- * a few roundings (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). */
-static inline void meet_box(lanes *restrict l, const zt_box box) {
-    const real less = 1 - 16 * REAL_ROUNDING, more = 1 + 16 * REAL_ROUNDING;
-    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
-        real room = l->room[j];
-        real x0 = (box.low.x - room - l->ox[j]) * l->kx[j];
-        real x1 = (box.high.x + room - l->ox[j]) * l->kx[j];
-        real y0 = (box.low.y - room - l->oy[j]) * l->ky[j];
-        real y1 = (box.high.y + room - l->oy[j]) * l->ky[j];
-        real z0 = (box.low.z - room - l->oz[j]) * l->kz[j];
-        real z1 = (box.high.z + room - l->oz[j]) * l->kz[j];
-        real enter = real_max(real_max(real_min(x0, x1), real_min(y0, y1)), real_min(z0, z1));
-        real leave = real_min(real_min(real_max(x0, x1), real_max(y0, y1)), real_max(z0, z1));
-        l->meets[j] |=
-            !(leave < 0) & !(enter * less > leave * more) & !(enter * less > l->t[j] * more);
-    }
-}
-
-static inline bool any_meets(const lanes *l) {
-    int32_t any = 0;
-    for (int j = 0; j < ZT_BATCH_LANES; j++) any |= l->meets[j];
-    return any;
-}
-
-/* Lists the rays that may meet a mesh before their t; `open_only` leaves out the ones that have
- * met something. */
-static int list_mesh_rays(zt_classic_work *restrict w, const zt_batch *restrict rays,
-                          const zt_tracer *tracer, bool open_only) {
-    const zt_placed_hull *hulls;
-    int hull_count = zt_meshes_hulls(&hulls, tracer->meshes), count = 0;
-    for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) {
-        int32_t meets[ZT_BATCH_LANES] = {0};
-        for (int h = 0; h < hull_count; h++) {
-            lanes l;
-            enter_hull(&l, rays, first, &hulls[h]);
-            meet_box(&l, *hulls[h].whole);
-            if (!any_meets(&l)) continue;
-            memset(l.meets, 0, sizeof l.meets);
-            for (int b = 0; b < hulls[h].part_count; b++) meet_box(&l, hulls[h].parts[b]);
-            for (int j = 0; j < ZT_BATCH_LANES; j++) meets[j] |= l.meets[j];
-        }
-        for (int j = 0; j < ZT_BATCH_LANES && first + j < rays->count; j++) {
-            w->mesh_list[count] = first + j;
-            count += meets[j] & (!open_only | (rays->hit[first + j] < 0));
-        }
-    }
-    return count;
-}
+zt_classic_trace ZT_ISA_NAME(zt_classic_trace);
 
 /* Gathers the rays that hit something into the points. `pixel` and `weight` of the work belong
  * to the rays before, to the points after. */
@@ -340,14 +208,9 @@ static void cast_shadows(zt_classic_work *restrict w, const zt_tracer *tracer,
         shadow->dy[j] = vy / distance;
         shadow->dz[j] = vz / distance;
         shadow->t[j] = distance;
-        shadow->hit[j] = -1;
     }
     shadow->count = count;
-    intersect_analytic(shadow, tracer);
-    if (tracer->meshes) {
-        int mesh_rays = list_mesh_rays(w, shadow, tracer, true);
-        zt_meshes_occlude(tracer->meshes, shadow, w->mesh_list, mesh_rays);
-    }
+    occlude(shadow, tracer);
     for (int j = 0; j < count; j++) {
         if (shadow->hit[j] < 0) continue;
         int k = w->list[j];
@@ -400,23 +263,15 @@ static void mirror(zt_batch *restrict rays, zt_classic_work *restrict w) {
     rays->count = count;
 }
 
-void ZT_CLASSIC_ISA(zt_radiance *light, const zt_tracer *tracer, zt_batch *rays,
-                    zt_classic_work *work) {
+void ZT_ISA_NAME(zt_classic_trace)(zt_radiance *light, const zt_tracer *tracer, zt_batch *rays,
+                                   zt_classic_work *work) {
     memset(light, 0, sizeof *light);
     for (int i = 0; i < rays->count; i++) {
         work->pixel[i] = i;
         work->weight[i] = 1;
     }
     for (int32_t depth = 0; rays->count > 0; depth++) {
-        for (int i = 0; i < zt_batch_padded(rays->count); i++) {
-            rays->t[i] = REAL_INFINITY;
-            rays->hit[i] = -1;
-        }
-        intersect_analytic(rays, tracer);
-        if (tracer->meshes) {
-            int mesh_rays = list_mesh_rays(work, rays, tracer, false);
-            zt_meshes_intersect(tracer->meshes, rays, work->mesh_list, mesh_rays);
-        }
+        intersect(rays, tracer);
         gather_hits(work, rays);
         find_surfaces(work, tracer);
         if (tracer->has_other_surfaces) find_other_surfaces(work, tracer, rays);

@@ -72,7 +72,7 @@ static inline real sphere_root(real a, real b, real c, real radius2, real across
     real t0 = c / q, t1 = q / a;
     real first = t0 < t1 ? t0 : t1, second = t0 < t1 ? t1 : t0;
     real t = first > 0 ? first : second;
-    return (inside > 0) & (t > 0) ? t : REAL_INFINITY;
+    return ((inside > 0) & (t > 0)) ? t : REAL_INFINITY;
 }
 
 static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
@@ -149,7 +149,7 @@ static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy,
     v_in |= (v == 0) & (edge_owned(x[2], y[2], x[0], y[0]) != clockwise);
     w_in |= (w == 0) & (edge_owned(x[0], y[0], x[1], y[1]) != clockwise);
     double t = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / (area * (double)ez);
-    return u_in & v_in & w_in & (area != 0) & (t > 0) ? (real)t : REAL_INFINITY;
+    return (u_in & v_in & w_in & (area != 0) & (t > 0)) ? (real)t : REAL_INFINITY;
 }
 
 #endif

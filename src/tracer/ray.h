@@ -10,6 +10,9 @@
 typedef float real;
 #define REAL_INFINITY __builtin_inff()
 
+static inline real real_max(real a, real b) { return a > b ? a : b; }
+static inline real real_min(real a, real b) { return a < b ? a : b; }
+
 /* The relative error of one rounding: 2^-24. */
 #define REAL_ROUNDING (0x1p-24f)
 

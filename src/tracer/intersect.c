@@ -1,0 +1,158 @@
+/* What a batch of rays meets. Loops run over the rays for one primitive after the other,
+ * without branches, so that the compiler makes them as wide as it may. Compiled once for each
+ * width of instructions (tracer/isa.h). */
+#include "tracer/intersect.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tracer/isa.h"
+
+/* A loop for each kind of primitive. What is nearer by nothing leaves the earlier hit. */
+#define DEFINE_LOOPS(kind)                                                                     \
+    static void kind##_intersect(zt_batch *restrict rays, const zt_primitive *p,               \
+                                 int32_t index, int count) {                                   \
+        WIDE_LOOP for (int i = 0; i < count; i++) {                                            \
+            real t = zt_##kind##_distance(p, rays->ox[i], rays->oy[i], rays->oz[i],            \
+                                          rays->dx[i], rays->dy[i], rays->dz[i]);              \
+            real nearest = rays->t[i];                                                         \
+            int32_t hit = rays->hit[i];                                                        \
+            rays->t[i] = t < nearest ? t : nearest;                                            \
+            rays->hit[i] = t < nearest ? index : hit;                                          \
+        }                                                                                      \
+    }
+DEFINE_LOOPS(plane)
+DEFINE_LOOPS(sphere)
+DEFINE_LOOPS(ellipsoid)
+DEFINE_LOOPS(triangle)
+
+static void intersect_analytic(zt_batch *rays, const zt_tracer *tracer) {
+    int count = zt_batch_padded(rays->count);
+    for (int32_t index = 0; index < tracer->primitive_count; index++) {
+        const zt_primitive *p = &tracer->primitives[index];
+        switch (p->kind) {
+        case ZT_PRIMITIVE_PLANE:
+            plane_intersect(rays, p, index, count);
+            break;
+        case ZT_PRIMITIVE_SPHERE:
+            sphere_intersect(rays, p, index, count);
+            break;
+        case ZT_PRIMITIVE_ELLIPSOID:
+            ellipsoid_intersect(rays, p, index, count);
+            break;
+        case ZT_PRIMITIVE_TRIANGLE:
+            triangle_intersect(rays, p, index, count);
+            break;
+        case ZT_PRIMITIVE_MESH:
+            break;
+        }
+    }
+}
+
+/* ZT_BATCH_LANES rays in the space of a hull: origins, one over directions, how far to look,
+ * and how much room the boxes need for the roundings of all that. */
+typedef struct lanes {
+    alignas(64) real ox[ZT_BATCH_LANES];
+    alignas(64) real oy[ZT_BATCH_LANES];
+    alignas(64) real oz[ZT_BATCH_LANES];
+    alignas(64) real kx[ZT_BATCH_LANES];
+    alignas(64) real ky[ZT_BATCH_LANES];
+    alignas(64) real kz[ZT_BATCH_LANES];
+    alignas(64) real t[ZT_BATCH_LANES];
+    alignas(64) real room[ZT_BATCH_LANES];
+    alignas(64) int32_t meets[ZT_BATCH_LANES];
+} lanes;
+
+static void enter_hull(lanes *restrict l, const zt_batch *restrict rays, int first,
+                       const zt_placed_hull *hull) {
+    const real3 rx = hull->rows[0], ry = hull->rows[1], rz = hull->rows[2], at = hull->at;
+    const real reach = hull->reach, size = hull->size;
+    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+        real ox = rays->ox[first + j], oy = rays->oy[first + j], oz = rays->oz[first + j];
+        real dx = rays->dx[first + j], dy = rays->dy[first + j], dz = rays->dz[first + j];
+        l->ox[j] = real_dot(rx.x, rx.y, rx.z, ox, oy, oz) + at.x;
+        l->oy[j] = real_dot(ry.x, ry.y, ry.z, ox, oy, oz) + at.y;
+        l->oz[j] = real_dot(rz.x, rz.y, rz.z, ox, oy, oz) + at.z;
+        l->kx[j] = 1 / real_dot(rx.x, rx.y, rx.z, dx, dy, dz);
+        l->ky[j] = 1 / real_dot(ry.x, ry.y, ry.z, dx, dy, dz);
+        l->kz[j] = 1 / real_dot(rz.x, rz.y, rz.z, dx, dy, dz);
+        l->t[j] = rays->t[first + j];
+        real largest = real_max(real_max(fabsf(ox), fabsf(oy)), fabsf(oz));
+        l->room[j] = 32 * REAL_ROUNDING * (reach * largest + size);
+        l->meets[j] = 0;
+    }
+}
+
+/* Adds to `meets` the rays that meet a box, grown by their room, before their t; a doubt (what
+ * is no number compares as false) counts as meeting. Distances to the sides may each be off by
+ * a few roundings (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). */
+static inline void meet_box(lanes *restrict l, const zt_box box) {
+    const real less = 1 - 16 * REAL_ROUNDING, more = 1 + 16 * REAL_ROUNDING;
+    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+        real room = l->room[j];
+        real x0 = (box.low.x - room - l->ox[j]) * l->kx[j];
+        real x1 = (box.high.x + room - l->ox[j]) * l->kx[j];
+        real y0 = (box.low.y - room - l->oy[j]) * l->ky[j];
+        real y1 = (box.high.y + room - l->oy[j]) * l->ky[j];
+        real z0 = (box.low.z - room - l->oz[j]) * l->kz[j];
+        real z1 = (box.high.z + room - l->oz[j]) * l->kz[j];
+        real enter = real_max(real_max(real_min(x0, x1), real_min(y0, y1)), real_min(z0, z1));
+        real leave = real_min(real_min(real_max(x0, x1), real_max(y0, y1)), real_max(z0, z1));
+        l->meets[j] |=
+            !(leave < 0) & !(enter * less > leave * more) & !(enter * less > l->t[j] * more);
+    }
+}
+
+static inline bool any_meets(const lanes *l) {
+    int32_t any = 0;
+    for (int j = 0; j < ZT_BATCH_LANES; j++) any |= l->meets[j];
+    return any;
+}
+
+/* Lists the rays that may meet a mesh before their t; `open_only` leaves out the ones that have
+ * met something. */
+static int list_mesh_rays(int32_t *restrict list, const zt_batch *restrict rays,
+                          const zt_tracer *tracer, bool open_only) {
+    const zt_placed_hull *hulls;
+    int hull_count = zt_meshes_hulls(&hulls, tracer->meshes), count = 0;
+    for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) {
+        int32_t meets[ZT_BATCH_LANES] = {0};
+        for (int h = 0; h < hull_count; h++) {
+            lanes l;
+            enter_hull(&l, rays, first, &hulls[h]);
+            meet_box(&l, *hulls[h].whole);
+            if (!any_meets(&l)) continue;
+            memset(l.meets, 0, sizeof l.meets);
+            for (int b = 0; b < hulls[h].part_count; b++) meet_box(&l, hulls[h].parts[b]);
+            for (int j = 0; j < ZT_BATCH_LANES; j++) meets[j] |= l.meets[j];
+        }
+        for (int j = 0; j < ZT_BATCH_LANES && first + j < rays->count; j++) {
+            list[count] = first + j;
+            count += meets[j] & (!open_only | (rays->hit[first + j] < 0));
+        }
+    }
+    return count;
+}
+
+static void clear_hits(zt_batch *rays) {
+    for (int i = 0; i < zt_batch_padded(rays->count); i++) rays->hit[i] = -1;
+}
+
+void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer) {
+    clear_hits(rays);
+    for (int i = 0; i < zt_batch_padded(rays->count); i++) rays->t[i] = REAL_INFINITY;
+    intersect_analytic(rays, tracer);
+    if (!tracer->meshes) return;
+    int32_t list[ZT_BATCH];
+    int count = list_mesh_rays(list, rays, tracer, false);
+    zt_meshes_intersect(tracer->meshes, rays, list, count);
+}
+
+void ZT_ISA_NAME(zt_occlude)(zt_batch *rays, const zt_tracer *tracer) {
+    clear_hits(rays);
+    intersect_analytic(rays, tracer);
+    if (!tracer->meshes) return;
+    int32_t list[ZT_BATCH];
+    int count = list_mesh_rays(list, rays, tracer, true);
+    zt_meshes_occlude(tracer->meshes, rays, list, count);
+}
