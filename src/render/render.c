@@ -89,15 +89,18 @@ static int add_samples(struct render_thread *own, int count) {
     return left_out;
 }
 
-static void fill_pixels(zt_image *image, const struct render_thread *own, int count) {
+static void fill_pixels(zt_image *image, struct render_thread *own, int count) {
+    zt_radiance *sum = &own->sum;
+    for (int i = 0; i < count; i++) {
+        real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
+        sum->r[i] *= share;
+        sum->g[i] *= share;
+        sum->b[i] *= share;
+    }
     for (int i = 0; i < count; i++) {
         size_t at = (size_t)own->row[i] * (size_t)image->width + (size_t)own->column[i];
-        float *pixel = image->pixels + 4 * at;
-        real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
-        pixel[0] = own->sum.r[i] * share;
-        pixel[1] = own->sum.g[i] * share;
-        pixel[2] = own->sum.b[i] * share;
-        pixel[3] = 1;
+        memcpy(image->pixels + 4 * at, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1},
+               4 * sizeof(float));
     }
 }
 

@@ -18,41 +18,63 @@
 
 zt_classic_trace ZT_ISA_NAME(zt_classic_trace);
 
+/* Loops run over whole groups of lanes: what lies beyond the count is computed and never used,
+ * but must be safe to compute. */
+
+/* Compacts, of `count` numbers 0, 1, …, those that are wanted; the rest of the last group of
+ * lanes repeats the first. */
+static int list_wanted(int32_t *restrict list, const int32_t *restrict wanted, int count) {
+    int listed = 0;
+    for (int i = 0; i < count; i++) {
+        list[listed] = i;
+        listed += wanted[i];
+    }
+    for (int i = listed; i < zt_batch_padded(listed); i++) list[i] = list[0];
+    return listed;
+}
+
+static inline void gather_hit(zt_classic_work *restrict w, int k, const zt_batch *restrict rays,
+                              int i) {
+    real t = rays->t[i], dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
+    int32_t hit = rays->hit[i];
+    w->primitive[k] = hit > 0 ? hit : 0;
+    w->part[k] = rays->part[i];
+    w->dx[k] = dx;
+    w->dy[k] = dy;
+    w->dz[k] = dz;
+    w->px[k] = rays->ox[i] + t * dx;
+    w->py[k] = rays->oy[i] + t * dy;
+    w->pz[k] = rays->oz[i] + t * dz;
+}
+
 /* Gathers the rays that hit something into the points. `pixel` and `weight` of the work belong
  * to the rays before, to the points after. */
-static void gather_hits(zt_classic_work *w, const zt_batch *rays) {
-    int count = 0;
-    for (int i = 0; i < rays->count; i++) {
-        w->list[count] = i;
-        count += rays->hit[i] >= 0;
+static void gather_hits(zt_classic_work *restrict w, const zt_batch *restrict rays) {
+    int padded = zt_batch_padded(rays->count), missed = 0;
+    WIDE_LOOP for (int i = 0; i < padded; i++) w->wanted[i] = rays->hit[i] >= 0;
+    for (int i = 0; i < rays->count; i++) missed |= !w->wanted[i];
+    w->count = rays->count;
+    if (!missed) {
+        WIDE_LOOP for (int i = 0; i < padded; i++) gather_hit(w, i, rays, i);
+        return;
     }
-    for (int k = 0; k < count; k++) {
+    w->count = list_wanted(w->list, w->wanted, rays->count);
+    for (int k = 0; k < w->count; k++) {
         int i = w->list[k]; /* i >= k, so compacting in place overwrites nothing still wanted */
         w->pixel[k] = w->pixel[i];
         w->weight[k] = w->weight[i];
     }
-    WIDE_LOOP for (int k = 0; k < count; k++) {
-        int i = w->list[k];
-        real t = rays->t[i], dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        w->primitive[k] = rays->hit[i];
-        w->part[k] = rays->part[i];
-        w->dx[k] = dx;
-        w->dy[k] = dy;
-        w->dz[k] = dz;
-        w->px[k] = rays->ox[i] + t * dx;
-        w->py[k] = rays->oy[i] + t * dy;
-        w->pz[k] = rays->oz[i] + t * dz;
-    }
-    w->count = count;
+    padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) gather_hit(w, k, rays, w->list[k]);
 }
 
-/* The normal and the corrected position of point k, of a kind of which a zt_surface says all.
- */
+/* The normal and the corrected position of point k, of a kind of which a zt_surface says all. A
+ * row of zeros leaves the position as it is. */
 static inline void find_surface(zt_classic_work *restrict w, int k, const zt_surface *s) {
     real qx = w->px[k] - s->center.x, qy = w->py[k] - s->center.y, qz = w->pz[k] - s->center.z;
     real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
          nz = s->normal.z + s->bend * qz;
-    real unit = 1 / sqrtf(real_dot(nx, ny, nz, nx, ny, nz));
+    real unit = 1 / sqrtf(real_max(real_dot(nx, ny, nz, nx, ny, nz), 1e-30f));
     nx *= unit;
     ny *= unit;
     nz *= unit;
@@ -73,13 +95,14 @@ static inline void find_surface(zt_classic_work *restrict w, int k, const zt_sur
 /* All points; where they lie on one primitive, as most of a tile's do, nothing is gathered. */
 static void find_surfaces(zt_classic_work *restrict w, const zt_tracer *tracer) {
     int32_t first = w->primitive[0], others = 0;
-    WIDE_LOOP for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
+    int padded = zt_batch_padded(w->count);
+    for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
     if (others) {
-        WIDE_LOOP for (int k = 0; k < w->count; k++)
+        WIDE_LOOP for (int k = 0; k < padded; k++)
             find_surface(w, k, &tracer->surfaces[w->primitive[k]]);
     } else if (w->count > 0) {
         const zt_surface only = tracer->surfaces[first];
-        WIDE_LOOP for (int k = 0; k < w->count; k++) find_surface(w, k, &only);
+        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, k, &only);
     }
 }
 
@@ -124,20 +147,13 @@ static void find_mesh(zt_classic_work *w, int k, const zt_meshes *meshes) {
     w->margin[k] = extent;
 }
 
-/* Points of the kinds that need more than a zt_surface. Their position is computed anew, for
- * the loop above has spoilt it. */
-static void find_other_surfaces(zt_classic_work *w, const zt_tracer *tracer,
-                                const zt_batch *rays) {
+/* Points of the kinds that need more than a zt_surface. */
+static void find_other_surfaces(zt_classic_work *w, const zt_tracer *tracer) {
     for (int k = 0; k < w->count; k++) {
         const zt_primitive *p = &tracer->primitives[w->primitive[k]];
-        if (p->kind != ZT_PRIMITIVE_MESH && p->kind != ZT_PRIMITIVE_ELLIPSOID) continue;
-        int i = w->list[k];
-        w->px[k] = rays->ox[i] + rays->t[i] * rays->dx[i];
-        w->py[k] = rays->oy[i] + rays->t[i] * rays->dy[i];
-        w->pz[k] = rays->oz[i] + rays->t[i] * rays->dz[i];
         if (p->kind == ZT_PRIMITIVE_MESH)
             find_mesh(w, k, tracer->meshes);
-        else
+        else if (p->kind == ZT_PRIMITIVE_ELLIPSOID)
             find_ellipsoid(w, k, p);
     }
 }
@@ -145,7 +161,8 @@ static void find_other_surfaces(zt_classic_work *w, const zt_tracer *tracer,
 /* Turns the normals to the side that the rays came from, makes the margin a length, and begins
  * the sum of light with the ambient. */
 static void face_rays(zt_classic_work *restrict w, real3 ambient) {
-    WIDE_LOOP for (int k = 0; k < w->count; k++) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
         real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
         bool away = real_dot(nx, ny, nz, w->dx[k], w->dy[k], w->dz[k]) > 0;
         w->nx[k] = away ? -nx : nx;
@@ -165,14 +182,16 @@ static real cut(real x) {
     return low < 1 ? low : 1;
 }
 
-/* What a lamp gives each point where nothing is in between. */
-static void shine(zt_classic_work *restrict w, const zt_lamp *lamp) {
-    real3 at = lamp->position, power = lamp->power;
-    WIDE_LOOP for (int k = 0; k < w->count; k++) {
+/* What a lamp gives each point where nothing is in between; false where it gives nothing to
+ * any. */
+static bool shine(zt_classic_work *restrict w, const zt_lamp *lamp) {
+    const real3 at = lamp->position, power = lamp->power;
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
         real vx = at.x - w->px[k], vy = at.y - w->py[k], vz = at.z - w->pz[k];
-        real square = real_dot(vx, vy, vz, vx, vy, vz);
         real toward = real_dot(w->nx[k], w->ny[k], w->nz[k], vx, vy, vz);
-        real fade = toward / sqrtf(square) / square;
+        real near = 1 / sqrtf(real_dot(vx, vy, vz, vx, vy, vz)); /* one over the distance */
+        real fade = toward * near * near * near;
         fade = toward > 0 ? fade : 0;
         real r = cut(power.x * fade * w->color_r[k]);
         real g = cut(power.y * fade * w->color_g[k]);
@@ -180,49 +199,44 @@ static void shine(zt_classic_work *restrict w, const zt_lamp *lamp) {
         w->lamp_r[k] = r;
         w->lamp_g[k] = g;
         w->lamp_b[k] = b;
-        w->lit[k] = r + g + b > 0;
+        w->wanted[k] = r + g + b > 0;
     }
+    int32_t any = 0;
+    for (int k = 0; k < w->count; k++) any |= w->wanted[k];
+    return any;
 }
 
-/* Takes a lamp's light from the points that something hides from it. */
-static void cast_shadows(zt_classic_work *restrict w, const zt_tracer *tracer,
-                         const zt_lamp *lamp) {
-    int count = 0;
-    for (int k = 0; k < w->count; k++) {
-        w->list[count] = k;
-        count += w->lit[k];
-    }
-    if (count == 0) return;
+/* Makes the shadow rays of all points: those that get no light look no distance, and meet
+ * nothing. */
+static void aim_at_lamp(zt_classic_work *restrict w, const zt_lamp *lamp) {
     zt_batch *restrict shadow = &w->shadow;
-    real3 at = lamp->position;
-    WIDE_LOOP for (int j = 0; j < count; j++) {
-        int k = w->list[j];
+    const real3 at = lamp->position;
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
         real ox = w->px[k] + w->margin[k] * w->nx[k], oy = w->py[k] + w->margin[k] * w->ny[k],
              oz = w->pz[k] + w->margin[k] * w->nz[k];
         real vx = at.x - ox, vy = at.y - oy, vz = at.z - oz;
-        real distance = sqrtf(real_dot(vx, vy, vz, vx, vy, vz));
-        shadow->ox[j] = ox;
-        shadow->oy[j] = oy;
-        shadow->oz[j] = oz;
-        shadow->dx[j] = vx / distance;
-        shadow->dy[j] = vy / distance;
-        shadow->dz[j] = vz / distance;
-        shadow->t[j] = distance;
+        real distance = sqrtf(real_dot(vx, vy, vz, vx, vy, vz)), near = 1 / distance;
+        shadow->ox[k] = ox;
+        shadow->oy[k] = oy;
+        shadow->oz[k] = oz;
+        shadow->dx[k] = vx * near;
+        shadow->dy[k] = vy * near;
+        shadow->dz[k] = vz * near;
+        shadow->t[k] = w->wanted[k] ? distance : 0;
+        shadow->hit[k] = -1;
     }
-    shadow->count = count;
-    occlude(shadow, tracer);
-    for (int j = 0; j < count; j++) {
-        if (shadow->hit[j] < 0) continue;
-        int k = w->list[j];
-        w->lamp_r[k] = w->lamp_g[k] = w->lamp_b[k] = 0;
-    }
+    shadow->count = w->count;
 }
 
+/* Adds a lamp's light where nothing hides it. */
 static void add_lamp(zt_classic_work *restrict w) {
-    WIDE_LOOP for (int k = 0; k < w->count; k++) {
-        w->sum_r[k] += w->lamp_r[k];
-        w->sum_g[k] += w->lamp_g[k];
-        w->sum_b[k] += w->lamp_b[k];
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        bool open = w->shadow.hit[k] < 0;
+        w->sum_r[k] += open ? w->lamp_r[k] : 0;
+        w->sum_g[k] += open ? w->lamp_g[k] : 0;
+        w->sum_b[k] += open ? w->lamp_b[k] : 0;
     }
 }
 
@@ -235,32 +249,38 @@ static void deliver(zt_radiance *restrict light, const zt_classic_work *restrict
     }
 }
 
+/* Makes ray j the mirrored one of point k. */
+static inline void mirror_ray(zt_batch *restrict rays, int j, const zt_classic_work *restrict w,
+                              int k) {
+    real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
+    real twice = -2 * real_dot(nx, ny, nz, w->dx[k], w->dy[k], w->dz[k]);
+    real dx = w->dx[k] + twice * nx, dy = w->dy[k] + twice * ny, dz = w->dz[k] + twice * nz;
+    real unit = 1 / sqrtf(real_dot(dx, dy, dz, dx, dy, dz));
+    rays->ox[j] = w->px[k] + w->margin[k] * nx;
+    rays->oy[j] = w->py[k] + w->margin[k] * ny;
+    rays->oz[j] = w->pz[k] + w->margin[k] * nz;
+    rays->dx[j] = dx * unit;
+    rays->dy[j] = dy * unit;
+    rays->dz[j] = dz * unit;
+}
+
 /* Makes the mirrored rays of the points that reflect the next batch. */
 static void mirror(zt_batch *restrict rays, zt_classic_work *restrict w) {
-    int count = 0;
-    for (int k = 0; k < w->count; k++) {
-        w->list[count] = k;
-        count += w->reflectivity[k] > 0;
-    }
-    for (int j = 0; j < count; j++) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) w->wanted[k] = w->reflectivity[k] > 0;
+    rays->count = list_wanted(w->list, w->wanted, w->count);
+    bool all = rays->count == w->count;
+    for (int j = 0; j < rays->count; j++) {
         int k = w->list[j];
         w->pixel[j] = w->pixel[k];
         w->weight[j] = w->weight[k] * w->reflectivity[k];
     }
-    WIDE_LOOP for (int j = 0; j < count; j++) {
-        int k = w->list[j];
-        real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
-        real twice = -2 * real_dot(nx, ny, nz, w->dx[k], w->dy[k], w->dz[k]);
-        real dx = w->dx[k] + twice * nx, dy = w->dy[k] + twice * ny, dz = w->dz[k] + twice * nz;
-        real unit = 1 / sqrtf(real_dot(dx, dy, dz, dx, dy, dz));
-        rays->ox[j] = w->px[k] + w->margin[k] * nx;
-        rays->oy[j] = w->py[k] + w->margin[k] * ny;
-        rays->oz[j] = w->pz[k] + w->margin[k] * nz;
-        rays->dx[j] = dx * unit;
-        rays->dy[j] = dy * unit;
-        rays->dz[j] = dz * unit;
+    padded = zt_batch_padded(rays->count);
+    if (all) {
+        WIDE_LOOP for (int j = 0; j < padded; j++) mirror_ray(rays, j, w, j);
+    } else {
+        WIDE_LOOP for (int j = 0; j < padded; j++) mirror_ray(rays, j, w, w->list[j]);
     }
-    rays->count = count;
 }
 
 void ZT_ISA_NAME(zt_classic_trace)(zt_radiance *light, const zt_tracer *tracer, zt_batch *rays,
@@ -274,11 +294,13 @@ void ZT_ISA_NAME(zt_classic_trace)(zt_radiance *light, const zt_tracer *tracer, 
         intersect(rays, tracer);
         gather_hits(work, rays);
         find_surfaces(work, tracer);
-        if (tracer->has_other_surfaces) find_other_surfaces(work, tracer, rays);
+        if (tracer->has_other_surfaces) find_other_surfaces(work, tracer);
         face_rays(work, tracer->ambient);
         for (int32_t i = 0; i < tracer->lamp_count; i++) {
-            shine(work, &tracer->lamps[i]);
-            if (tracer->lamps[i].shadows) cast_shadows(work, tracer, &tracer->lamps[i]);
+            const zt_lamp *lamp = &tracer->lamps[i];
+            if (!shine(work, lamp)) continue;
+            aim_at_lamp(work, lamp);
+            if (lamp->shadows) occlude(&work->shadow, tracer);
             add_lamp(work);
         }
         deliver(light, work);

@@ -35,8 +35,8 @@ typedef struct zt_classic_work {
     alignas(64) real lamp_r[ZT_BATCH];
     alignas(64) real lamp_g[ZT_BATCH];
     alignas(64) real lamp_b[ZT_BATCH];
-    alignas(64) int32_t lit[ZT_BATCH];  /* whether that lamp gives any */
-    alignas(64) int32_t list[ZT_BATCH]; /* numbers of the points that go on */
+    alignas(64) int32_t wanted[ZT_BATCH]; /* which of them go on */
+    alignas(64) int32_t list[ZT_BATCH];   /* the numbers of those */
     zt_batch shadow;
     int count; /* points */
 } zt_classic_work;

@@ -134,13 +134,11 @@ static int list_mesh_rays(int32_t *restrict list, const zt_batch *restrict rays,
     return count;
 }
 
-static void clear_hits(zt_batch *rays) {
-    for (int i = 0; i < zt_batch_padded(rays->count); i++) rays->hit[i] = -1;
-}
-
 void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer) {
-    clear_hits(rays);
-    for (int i = 0; i < zt_batch_padded(rays->count); i++) rays->t[i] = REAL_INFINITY;
+    for (int i = 0; i < zt_batch_padded(rays->count); i++) {
+        rays->t[i] = REAL_INFINITY;
+        rays->hit[i] = -1;
+    }
     intersect_analytic(rays, tracer);
     if (!tracer->meshes) return;
     int32_t list[ZT_BATCH];
@@ -149,7 +147,6 @@ void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer) {
 }
 
 void ZT_ISA_NAME(zt_occlude)(zt_batch *rays, const zt_tracer *tracer) {
-    clear_hits(rays);
     intersect_analytic(rays, tracer);
     if (!tracer->meshes) return;
     int32_t list[ZT_BATCH];

@@ -9,7 +9,7 @@
  * is -1 and t infinite where there is none. Of equally near hits the first object's counts. */
 void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer);
 
-/* Whether anything is hit before t (given): hit becomes -1 where nothing is. */
+/* Whether anything is hit before t (given): hit, given as -1, stays so where nothing is. */
 void ZT_ISA_NAME(zt_occlude)(zt_batch *rays, const zt_tracer *tracer);
 
 #endif
