@@ -232,13 +232,13 @@ static void odd_keys(void **state) {
             times[k] = time = fmax(time + spacing, nextafter(time, INFINITY));
             keys[k] = (quat){draw_nasty(&d), draw_nasty(&d), draw_nasty(&d), draw_nasty(&d)};
         }
-        for (zt_curve_kind kind = 0; kind < ZT_CURVE_COUNT; kind++) {
+        for (zt_curve_kind kind = 0; kind < ZT_CURVE_KIND_COUNT; kind++) {
             zt_curve curve = make(&arena, kind, 5, times, keys);
             for (int i = 0; i < 20; i++) {
                 int k = draw_below(&d, 4);
                 quat q = eval(&curve, times[k] + draw_unit(&d) * (times[k + 1] - times[k]));
                 if (!(length_error_ulp(q) <= 4))
-                    fail_msg("(%g %g %g %g) is no rotation", q.w, q.x, q.y, q.z);
+                    fail_msg("kind %d (%.17g %.17g %.17g %.17g) is no rotation", kind, q.w, q.x, q.y, q.z);
             }
         }
     }

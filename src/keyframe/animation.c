@@ -1,5 +1,6 @@
 #include "keyframe/animation.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,14 @@ static void *copy(zt_arena *arena, const void *array, size_t element_size, int32
     void *own = zt_arena_push_array(arena, element_size, (size_t)count);
     if (own && count) memcpy(own, array, element_size * (size_t)count);
     return own;
+}
+
+/* Between its keys a curve may overshoot, but no radius becomes negative. */
+static void keep_in_range(double *value, const zt_property *property) {
+    const double unit =
+        property->unit ? 3.14159265358979323846 / 180 : 1; /* "deg" is the only one */
+    for (int c = 0; c < zt_value_width(property->kind); c++)
+        value[c] = fmin(fmax(value[c], property->min * unit), property->max * unit);
 }
 
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
@@ -23,6 +32,7 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
         const zt_track *track = &animation->tracks[i];
         double value[ZT_VALUE_WIDTH_MAX];
         zt_curve_eval(value, &track->curve, time_s);
+        keep_in_range(value, track->property);
         zt_property_set(track->property, scene, track->index, value);
     }
     return ZT_OK;
@@ -74,7 +84,7 @@ zt_movement zt_animation_movement(const zt_animation *animation, int index) {
     const zt_track *track = &animation->tracks[index];
     const zt_curve *curve = &track->curve;
     return (zt_movement){.name = track->name,
-                         .curve = zt_curve_name(curve->kind),
+                         .curve = zt_curve_label(curve),
                          .key_count = curve->key_count,
                          .first_s = curve->times[0],
                          .last_s = curve->times[curve->key_count - 1]};

@@ -1,102 +1,58 @@
-/* Channels are interpolated as fractions of the way from one key's value to the next one's, so
- * that no slope in units a second, which could overflow, is ever formed. */
 #include "keyframe/curve.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "base/diag.h"
-#include "keyframe/rotation.h"
-
-enum { ARC_SIZE = sizeof(zt_rotation_arc) / sizeof(double) };
+#include "keyframe/curve_inside.h"
+#include "keyframe/oklab.h"
 
 const char *zt_curve_name(zt_curve_kind kind) {
-    static const char *const names[ZT_CURVE_COUNT] = {"hold", "linear", "smooth"};
+    static const char *const names[ZT_CURVE_KIND_COUNT] = {
+        "hold", "linear", "smooth", "catmull-rom", "bezier", "hermite", "tcb"};
     return names[kind];
 }
 
-/* The speed at a key, as a multiple of the mean speed of the step on one of its
- * sides: M. Steffen, "A simple method for monotonic interpolation in one dimension", 1990, with
- * slopes divided by that mean speed. `relation` is the mean speed of the other step in the same
- * measure, `weight` this step's share of the time of both. The result is in 0..2. */
-static double speed_factor(double relation, double weight) {
-    if (!(relation > 0)) return 0;
-    double parabola = relation * weight + (1 - weight);
-    return 2 * fmin(fmin(1, relation), parabola / 2);
+const char *zt_curve_end_name(zt_curve_end end) {
+    static const char *const names[ZT_END_COUNT] = {"hold", "linear", "loop", "ping-pong",
+                                                    "loop-with-offset"};
+    return names[end];
 }
 
-/* Two factors of the mean speed for each step and channel: at its begin and at its end. Both
- * ends of the curve are at rest, as they are outside. */
-static void smooth_channels(double *slopes, const zt_curve *curve) {
-    int32_t width = curve->width;
-    for (int32_t k = 1; k + 1 < curve->key_count; k++) {
-        double before_s = curve->times[k] / 2 - curve->times[k - 1] / 2;
-        double after_s = curve->times[k + 1] / 2 - curve->times[k] / 2;
-        double weight = after_s / (before_s + after_s);
-        const double *value = curve->values + (int64_t)k * width;
-        double *slope = slopes + (int64_t)k * 2 * width;
-        for (int32_t c = 0; c < width; c++) {
-            double before = value[c] / 2 - value[c - width] / 2;
-            double after = value[c + width] / 2 - value[c] / 2;
-            double relation = (before / after) * (after_s / before_s);
-            slope[2 * (c - width) + 1] = speed_factor(1 / relation, 1 - weight);
-            slope[2 * c] = speed_factor(relation, weight);
-        }
-    }
+const char *zt_curve_label(const zt_curve *curve) {
+    if (curve->spring) return "spring";
+    if (curve->key_count == 1) return zt_curve_name(ZT_CURVE_HOLD);
+    for (int32_t k = 1; k + 1 < curve->key_count; k++)
+        if (curve->kinds[k] != curve->kinds[0] ||
+            (curve->eases && curve->eases[k] != curve->eases[0]))
+            return "mixed";
+    if (curve->eases && curve->eases[0]) return "eased";
+    return zt_curve_name((zt_curve_kind)curve->kinds[0]);
 }
 
-static bool keys_are_sound(int32_t key_count, int32_t width, const double *times,
-                           const double *values) {
-    for (int32_t k = 0; k < key_count; k++) {
-        if (!isfinite(times[k]) || (k > 0 && !(times[k] > times[k - 1]))) return false;
-        for (int32_t c = 0; c < width; c++)
-            if (!isfinite(values[(int64_t)k * width + c])) return false;
-    }
-    return true;
-}
+/* ---- where a time falls --------------------------------------------------------------------
+ */
 
-static zt_status prepare_smooth(zt_curve *curve, zt_arena *arena) {
-    size_t segment_count = (size_t)(curve->key_count - 1);
-    bool rotation = curve->value_kind == ZT_VALUE_ROTATION;
-    size_t size = rotation ? ARC_SIZE : 2 * (size_t)curve->width;
-    double *slopes = ZT_PUSH(arena, double, segment_count *size);
-    if (!slopes) return ZT_EMEMORY;
-    if (rotation)
-        zt_rotation_smooth((zt_rotation_arc *)slopes, (const quat *)curve->values, curve->times,
-                           curve->key_count);
-    else
-        smooth_channels(slopes, curve);
-    curve->slopes = slopes;
-    return ZT_OK;
-}
-
-zt_status zt_curve_make(zt_curve *curve, zt_arena *arena, zt_curve_kind kind,
-                        zt_value_kind value_kind, int32_t key_count, const double *times,
-                        const double *values) {
-    int32_t width = zt_value_width(value_kind);
-    if (key_count < 1 || !keys_are_sound(key_count, width, times, values)) return ZT_EARGUMENT;
-    size_t count = (size_t)key_count, value_count = count * (size_t)width;
-    double *own_times = ZT_PUSH(arena, double, count);
-    double *own_values = ZT_PUSH(arena, double, value_count);
-    if (!own_times || !own_values) return ZT_EMEMORY;
-    memcpy(own_times, times, count * sizeof *times);
-    memcpy(own_values, values, value_count * sizeof *values);
-    if (value_kind == ZT_VALUE_ROTATION) zt_rotation_align((quat *)own_values, key_count);
-    *curve = (zt_curve){.kind = value_kind == ZT_VALUE_SWITCH ? ZT_CURVE_HOLD : kind,
-                        .value_kind = value_kind,
-                        .width = width,
-                        .key_count = key_count,
-                        .times = own_times,
-                        .values = own_values};
-    return curve->kind == ZT_CURVE_SMOOTH ? prepare_smooth(curve, arena) : ZT_OK;
-}
-
-/* The last key at or before a time that is after the first key's. */
+/* The last key at or before a time; 0 before the first. Looks where it would be if keys were
+ * evenly spaced, then in strides that double, then by halving: near to constant for dense keys,
+ * and never worse than logarithmic. */
 static int32_t key_before(const zt_curve *curve, double time_s) {
-    int32_t low = 0, high = curve->key_count;
+    const double *times = curve->times;
+    int32_t count = curve->key_count, low = 0, high = count, stride = 1;
+    double guess = (time_s - times[0]) * curve->keys_per_s;
+    int32_t at = !(guess > 0) ? 0 : guess < count - 1 ? (int32_t)guess : count - 1;
+    if (times[at] <= time_s) {
+        for (low = at; stride < count - low && times[low + stride] <= time_s; stride *= 2)
+            low += stride;
+        if (stride < count - low) high = low + stride;
+    } else {
+        for (high = at; high > stride && times[high - stride] > time_s; stride *= 2)
+            high -= stride;
+        if (stride < high) low = high - stride;
+    }
     while (high - low > 1) {
         int32_t middle = low + (high - low) / 2;
-        if (curve->times[middle] <= time_s)
+        if (times[middle] <= time_s)
             low = middle;
         else
             high = middle;
@@ -104,50 +60,184 @@ static int32_t key_before(const zt_curve *curve, double time_s) {
     return low;
 }
 
+/* Takes a time back to where the keys are, in a loop. */
+static void unroll(zt_curve_spot *spot, const zt_curve *curve, bool back_and_forth) {
+    double first = curve->times[0], last = curve->times[curve->key_count - 1];
+    double span = last - first, x = spot->time_s - first, rest = fmod(x, span);
+    if (rest < 0) rest += span;
+    spot->round = rint((x - rest) / span);
+    /* A time that is on a key but for its own rounding shall be exactly there: held values and
+     * jumps would be a frame late. */
+    double tolerance =
+        4 * DBL_EPSILON * fmax(fabs(spot->time_s), fmax(fabs(first), fabs(last)));
+    if (rest + tolerance >= span) rest = 0, spot->round++;
+    double time_s = back_and_forth && fmod(spot->round, 2) != 0 ? last - rest : first + rest;
+    double key_s = curve->times[key_before(curve, time_s + tolerance)];
+    spot->time_s = key_s > time_s ? key_s : time_s;
+}
+
+static void leave_keys(zt_curve_spot *spot, const zt_curve *curve, zt_curve_end end,
+                       double edge_s) {
+    switch (end) {
+    case ZT_END_LINEAR:
+        spot->beyond_s = spot->time_s - edge_s;
+        spot->time_s = edge_s;
+        break;
+    case ZT_END_LOOP:
+    case ZT_END_LOOP_WITH_OFFSET:
+    case ZT_END_PING_PONG:
+        unroll(spot, curve, end == ZT_END_PING_PONG);
+        break;
+    case ZT_END_HOLD:
+    case ZT_END_COUNT:
+        break;
+    }
+}
+
 /* Where `time_s` is between two times: 0..1, since rounding keeps order. */
 static double fraction(double time_s, double first, double last) {
-    double u = (time_s - first) / (last - first);
-    return isfinite(last - first) ? u : (time_s / 2 - first / 2) / (last / 2 - first / 2);
+    if (!isfinite(last - first)) time_s /= 2, first /= 2, last /= 2;
+    return (time_s - first) / (last - first);
 }
 
-/* From a to b, never beyond either. */
-static double mix(double a, double b, double u) {
+static double way_parameter(const zt_curve *curve, int32_t way, double u) {
+    if (curve->kinds[way] == ZT_CURVE_BEZIER)
+        return zt_ease_bezier_parameter(curve->handle_times[way][0],
+                                        curve->handle_times[way][1], u);
+    if (!curve->eases || !curve->eases[way]) return u;
+    double s = zt_ease_eval(curve->eases[way], u);
+    return isfinite(s) ? s : u;
+}
+
+zt_curve_spot zt_curve_find(const zt_curve *curve, double time_s) {
+    zt_curve_spot spot = {.time_s = time_s};
+    int32_t last = curve->key_count - 1;
+    double first_s = curve->times[0], last_s = curve->times[last];
+    if (last > 0 && isfinite(time_s)) {
+        if (time_s < first_s)
+            leave_keys(&spot, curve, curve->before, first_s);
+        else if (time_s > last_s || (time_s == last_s && curve->after == ZT_END_LOOP))
+            leave_keys(&spot, curve, curve->after, last_s);
+    }
+    spot.key = key_before(curve, spot.time_s);
+    double key_s = curve->times[spot.key];
+    if (spot.key < last && spot.time_s > key_s) {
+        spot.u = fraction(spot.time_s, key_s, curve->times[spot.key + 1]);
+        spot.s = way_parameter(curve, spot.key, spot.u);
+    }
+    return spot;
+}
+
+/* ---- the value there -----------------------------------------------------------------------
+ */
+
+/* From a to b: never beyond either for u in 0..1, else straight on. */
+static double along(double a, double b, double u) {
     double value = a + u * (b - a);
-    if (!isfinite(b - a)) value = 2 * (a / 2 + u * (b / 2 - a / 2));
-    return fmin(fmax(value, fmin(a, b)), fmax(a, b));
+    if (!isfinite(value)) value = 2 * (a / 2 + u * (b / 2 - a / 2));
+    double low = a < b ? a : b, high = a < b ? b : a;
+    if (u < 0 || u > 1) low = -DBL_MAX, high = DBL_MAX;
+    return value < low ? low : value > high ? high : value;
 }
 
-/* The monotone cubic from 0 to 1 that begins and ends with these speeds, each in 0..2. */
-static double ramp(double u, double begin, double end) {
-    return u * (begin + u * (3 - 2 * begin - end + u * (begin + end - 2)));
+static double bernstein(double a, double first, double second, double b, double s) {
+    double t = 1 - s;
+    return a + s * (3 * t * (t * (first - a) + s * (second - a)) + s * s * (b - a));
 }
 
-static void eval_rotation(double *value, const zt_curve *curve, int32_t segment, double u) {
-    const quat *keys = (const quat *)curve->values + segment;
-    quat q = curve->kind == ZT_CURVE_LINEAR
-                 ? zt_rotation_slerp(keys[0], keys[1], u)
-                 : zt_rotation_arc_eval((const zt_rotation_arc *)curve->slopes + segment,
-                                        keys[0], u);
-    memcpy(value, &q, sizeof q);
+/* A cubic Bezier curve: within its control points for s in 0..1. */
+static double cubic(double a, double first, double second, double b, double s) {
+    double value = bernstein(a, first, second, b, s);
+    if (!isfinite(value)) value = 8 * bernstein(a / 8, first / 8, second / 8, b / 8, s);
+    double low = a < b ? a : b, high = a < b ? b : a;
+    double inner_low = first < second ? first : second;
+    double inner_high = first < second ? second : first;
+    low = inner_low < low ? inner_low : low;
+    high = inner_high > high ? inner_high : high;
+    if (s < 0 || s > 1) return value;
+    return value < low ? low : value > high ? high : value;
+}
+
+static void eval_way(double *point, const zt_curve *curve, const zt_curve_spot *spot) {
+    int32_t k = spot->key, width = curve->point_width;
+    const double *a = curve->points + (int64_t)k * width, *b = a + width;
+    double s = spot->s;
+    zt_curve_kind kind = spot->u > 0 ? (zt_curve_kind)curve->kinds[k] : ZT_CURVE_HOLD;
+    const double *controls =
+        kind > ZT_CURVE_LINEAR ? curve->controls + (int64_t)k * curve->control_width : NULL;
+    if (kind == ZT_CURVE_HOLD) {
+        memcpy(point, a, (size_t)width * sizeof *point);
+    } else if (zt_curve_is_on_sphere(curve) && kind != ZT_CURVE_HERMITE) {
+        quat from = zt_curve_quat(a);
+        quat q = kind == ZT_CURVE_LINEAR
+                     ? zt_rotation_slerp(from, zt_curve_quat(b), s)
+                     : zt_rotation_arc_eval((const zt_rotation_arc *)controls, from, s);
+        memcpy(point, &q, sizeof q);
+    } else if (kind == ZT_CURVE_LINEAR) {
+        for (int32_t c = 0; c < width; c++) point[c] = along(a[c], b[c], s);
+    } else {
+        for (int32_t c = 0; c < width; c++)
+            point[c] = cubic(a[c], controls[c], controls[width + c], b[c], s);
+        if (zt_curve_is_on_sphere(curve)) {
+            quat q = zt_rotation_unit(zt_curve_quat(point));
+            memcpy(point, &q, sizeof q);
+        }
+    }
+}
+
+/* On from an end in a straight line, or turning on. */
+static void go_on(double *point, const zt_curve *curve, double beyond_s) {
+    const double *speed = curve->end_speeds + (beyond_s < 0 ? 0 : curve->point_width);
+    if (zt_curve_is_on_sphere(curve)) {
+        vec3 half_turn = {speed[0] * beyond_s, speed[1] * beyond_s, speed[2] * beyond_s};
+        quat q = zt_rotation_unit(quat_mul(zt_curve_quat(point), zt_rotation_exp(half_turn)));
+        memcpy(point, &q, sizeof q);
+        return;
+    }
+    for (int32_t c = 0; c < curve->point_width; c++) point[c] += speed[c] * beyond_s;
+}
+
+/* Repeats the way from the first key to the last one as often as there were rounds. */
+static void offset(double *point, const zt_curve *curve, double round) {
+    const double *first = curve->points;
+    const double *last = first + (int64_t)(curve->key_count - 1) * curve->point_width;
+    if (zt_curve_is_on_sphere(curve)) {
+        quat way = quat_mul(zt_curve_quat(last), quat_conjugate(zt_curve_quat(first)));
+        quat rounds = zt_rotation_exp(vec3_scale(zt_rotation_log(way), round));
+        quat q = zt_rotation_unit(quat_mul(rounds, zt_curve_quat(point)));
+        memcpy(point, &q, sizeof q);
+        return;
+    }
+    for (int32_t c = 0; c < curve->point_width; c++) point[c] += round * (last[c] - first[c]);
+}
+
+static void from_space(double *value, const zt_curve *curve, const double *point) {
+    if (curve->space == ZT_SPACE_OKLAB) {
+        vec3 light = zt_oklab_to_light((vec3){point[0], point[1], point[2]});
+        memcpy(value, &light, sizeof light);
+    } else if (curve->space == ZT_SPACE_TURNS) {
+        quat q = zt_rotation_of_turn((vec3){point[0], point[1], point[2]});
+        memcpy(value, &q, sizeof q);
+    } else
+        memcpy(value, point, (size_t)curve->width * sizeof *value);
+    for (int32_t c = 0; c < curve->width; c++) value[c] = zt_curve_finite(value[c]);
 }
 
 void zt_curve_eval(double *value, const zt_curve *curve, double time_s) {
-    int32_t width = curve->width;
-    int32_t k = time_s > curve->times[0] ? key_before(curve, time_s) : 0;
-    const double *a = curve->values + (int64_t)k * width, *b = a + width;
-    if (curve->kind == ZT_CURVE_HOLD || k + 1 == curve->key_count ||
-        !(time_s > curve->times[k])) {
-        memcpy(value, a, (size_t)width * sizeof *value);
+    zt_curve_spot spot = zt_curve_find(curve, time_s);
+    bool offsets = spot.round != 0 &&
+                   (spot.round < 0 ? curve->before : curve->after) == ZT_END_LOOP_WITH_OFFSET;
+    if (!(spot.u > 0) && !curve->spring && spot.beyond_s == 0 && !offsets) {
+        memcpy(value, curve->values + (int64_t)spot.key * curve->width,
+               (size_t)curve->width * sizeof *value);
         return;
     }
-    double u = fraction(time_s, curve->times[k], curve->times[k + 1]);
-    if (curve->value_kind == ZT_VALUE_ROTATION) {
-        eval_rotation(value, curve, k, u);
-        return;
-    }
-    const double *slope = curve->slopes ? curve->slopes + (int64_t)k * 2 * width : NULL;
-    for (int32_t c = 0; c < width; c++) {
-        double way = slope ? ramp(u, slope[2 * c], slope[2 * c + 1]) : u;
-        value[c] = mix(a[c], b[c], way);
-    }
+    double point[ZT_VALUE_WIDTH_MAX];
+    if (curve->spring)
+        zt_curve_spring_eval(point, curve, spot.key, spot.time_s);
+    else
+        eval_way(point, curve, &spot);
+    if (spot.beyond_s != 0) go_on(point, curve, spot.beyond_s);
+    if (offsets) offset(point, curve, spot.round);
+    from_space(value, curve, point);
 }

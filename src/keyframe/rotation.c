@@ -1,28 +1,82 @@
 #include "keyframe/rotation.h"
 
 #include <float.h>
+#include <string.h>
 
-/* Steps whose keys' quaternions are this near to perpendicular are half turns, but for the
- * rounding of their angles. */
-static const double half_turn_tolerance = 1e-12;
+static const vec3 still = {0, 0, 0};
+
+/* ---- as they are written -------------------------------------------------------------------
+ */
 
 quat zt_rotation_unit(quat q) {
     double n2 = quat_dot(q, q);
-    if (fabs(n2 - 1) <= 8 * DBL_EPSILON) return q;
+    if (fabs(n2 - 1) <= 4 * DBL_EPSILON) return q;
     double m = fmax(fmax(fabs(q.w), fabs(q.x)), fmax(fabs(q.y), fabs(q.z)));
     if (!(m > 0)) return quat_identity();
     return quat_normalize((quat){q.w / m, q.x / m, q.y / m, q.z / m});
 }
 
-void zt_rotation_align(quat *keys, int32_t count) {
-    double sign = 1;
-    quat before = quat_identity();
-    for (int32_t k = 0; k < count; k++) {
-        quat given = zt_rotation_unit(keys[k]);
-        if (k > 0 && quat_dot(before, given) < -half_turn_tolerance) sign = -sign;
-        keys[k] = quat_scale(given, sign);
-        before = given;
+bool zt_rotation_order_is_sound(const char *order) {
+    return strlen(order) == 3 && strchr(order, 'x') && strchr(order, 'y') && strchr(order, 'z');
+}
+
+quat zt_rotation_euler(vec3 angles, const char *order) {
+    quat q = quat_identity();
+    for (int i = 0; i < 3; i++) {
+        vec3 turn = {order[i] == 'x' ? angles.x : 0, order[i] == 'y' ? angles.y : 0,
+                     order[i] == 'z' ? angles.z : 0};
+        q = quat_mul(zt_rotation_of_turn(turn), q);
     }
+    return zt_rotation_unit(q);
+}
+
+quat zt_rotation_of_turn(vec3 turn) { return zt_rotation_exp(vec3_scale(turn, 0.5)); }
+
+/* The unit quaternion that takes the axes to three perpendicular unit vectors, by its largest
+ * component (S. W. Shepperd, "Quaternion from rotation matrix", 1978). */
+static quat of_axes(vec3 x, vec3 y, vec3 z) {
+    double w2 = 1 + x.x + y.y + z.z, x2 = 1 + x.x - y.y - z.z, y2 = 1 - x.x + y.y - z.z,
+           z2 = 1 - x.x - y.y + z.z;
+    quat q;
+    if (w2 >= x2 && w2 >= y2 && w2 >= z2)
+        q = (quat){w2, y.z - z.y, z.x - x.z, x.y - y.x};
+    else if (x2 >= y2 && x2 >= z2)
+        q = (quat){y.z - z.y, x2, x.y + y.x, z.x + x.z};
+    else if (y2 >= z2)
+        q = (quat){z.x - x.z, x.y + y.x, y2, y.z + z.y};
+    else
+        q = (quat){x.y - y.x, z.x + x.z, y.z + z.y, z2};
+    return zt_rotation_unit(q);
+}
+
+quat zt_rotation_look(vec3 direction, vec3 up, double roll) {
+    quat rolled = zt_rotation_of_turn((vec3){0, 0, roll});
+    vec3 back = vec3_scale(vec3_normalize(direction), -1);
+    if (vec3_max_abs(back) == 0) return rolled;
+    vec3 right = vec3_cross(vec3_normalize(up), back);
+    if (vec3_max_abs(right) < 1e-12) {
+        double x = fabs(back.x), y = fabs(back.y), z = fabs(back.z);
+        vec3 least = x <= y && x <= z ? (vec3){1, 0, 0}
+                     : y <= z         ? (vec3){0, 1, 0}
+                                      : (vec3){0, 0, 1};
+        right = vec3_cross(least, back);
+    }
+    right = vec3_normalize(right);
+    return zt_rotation_unit(quat_mul(of_axes(right, vec3_cross(back, right), back), rolled));
+}
+
+/* ---- between them --------------------------------------------------------------------------
+ */
+
+double zt_rotation_angle(quat a, quat b) {
+    quat q = quat_mul(quat_conjugate(a), b);
+    return 2 * atan2(vec3_length((vec3){q.x, q.y, q.z}), fabs(q.w));
+}
+
+double zt_rotation_short_way(quat a, quat b) {
+    /* Half turns, but for the rounding of their angles. */
+    const double tolerance = 1e-12;
+    return quat_dot(a, b) < -tolerance ? -1 : 1;
 }
 
 /* q less its part along the direction of d. */
@@ -41,65 +95,58 @@ quat zt_rotation_slerp(quat a, quat b, double u) {
     else
         difference = across(difference, sum);
     double angle =
-        (2 * u - 1) * atan2(d, s); /* from the middle, half of the separation each way */
+        (2 * u - 1) * atan2(d, s); /* from the middle, half the separation each way */
     return zt_rotation_unit(quat_add(quat_scale(quat_normalize(sum), cos(angle)),
                                      quat_scale(quat_normalize(difference), sin(angle))));
 }
 
-/* The turn whose exponential is the unit quaternion q: at most half a round of the sphere. */
-static vec3 logarithm(quat q) {
+vec3 zt_rotation_log(quat q) {
     vec3 v = {q.x, q.y, q.z};
     double sine = vec3_length(v);
-    return sine > 0 ? vec3_scale(v, atan2(sine, q.w) / sine) : (vec3){0, 0, 0};
+    return sine > 0 ? vec3_scale(v, atan2(sine, q.w) / sine) : still;
 }
 
-static quat exponential(vec3 v) {
-    double angle = vec3_length(v);
+quat zt_rotation_exp(vec3 half_turn) {
+    double angle = vec3_length(half_turn);
+    if (!(angle < HUGE_VAL)) return quat_identity(); /* nobody can tell which way it ends */
     double sinc = angle > 0 ? sin(angle) / angle : 1;
-    return (quat){cos(angle), v.x * sinc, v.y * sinc, v.z * sinc};
+    return zt_rotation_unit(
+        (quat){cos(angle), half_turn.x * sinc, half_turn.y * sinc, half_turn.z * sinc});
 }
 
-/* How far the key between two steps turns during the time of the step `after`, where `relation`
- * is that time over the time of the step `before`. Both steps, and the result, are turns in the
- * key's own frame. */
-static vec3 tangent(vec3 before, vec3 after, double relation) {
-    double b = vec3_length(before) * relation, a = vec3_length(after);
-    if (!(a > 0) || !(b > 0)) return (vec3){0, 0, 0};
-    double weight = relation / (1 + relation);
-    vec3 mean = vec3_add(vec3_scale(before, relation * weight), vec3_scale(after, 1 - weight));
-    double cosine = vec3_dot(vec3_normalize(before), vec3_normalize(after));
-    /* Turning on in one direction keeps its speed, turning back comes to rest. */
-    double speed = fmin(vec3_length(mean), 2 * fmin(a, b)) * (1 + cosine) / 2;
-    return vec3_scale(vec3_normalize(mean), fmax(speed, 0));
-}
-
-void zt_rotation_smooth(zt_rotation_arc *arcs, const quat *keys, const double *times,
-                        int32_t count) {
-    /* First each arc holds in [1] its whole step, and in [0] and [2] thirds of the tangents. */
-    for (int32_t k = 0; k + 1 < count; k++)
-        arcs[k] = (zt_rotation_arc){
-            .turns[1] = logarithm(quat_mul(quat_conjugate(keys[k]), keys[k + 1]))};
-    for (int32_t k = 1; k + 1 < count; k++) {
-        vec3 before = arcs[k - 1].turns[1], after = arcs[k].turns[1];
-        /* Limited, so that no product overflows where one step is instantaneous beside the
-         * other. */
-        double relation = (times[k + 1] / 2 - times[k] / 2) / (times[k] / 2 - times[k - 1] / 2);
-        relation = fmin(fmax(relation, 1e-100), 1e100);
-        arcs[k - 1].turns[2] = vec3_scale(tangent(after, before, 1 / relation), 1.0 / 3);
-        arcs[k].turns[0] = vec3_scale(tangent(before, after, relation), 1.0 / 3);
-    }
-    for (int32_t k = 0; k + 1 < count; k++) {
-        quat step = quat_mul(quat_conjugate(keys[k]), keys[k + 1]);
-        quat begin = exponential(vec3_scale(arcs[k].turns[0], -1));
-        quat end = exponential(vec3_scale(arcs[k].turns[2], -1));
-        arcs[k].turns[1] = logarithm(quat_mul(quat_mul(begin, step), end));
-    }
+zt_rotation_arc zt_rotation_arc_make(quat a, quat b, vec3 leave, vec3 arrive) {
+    vec3 first = vec3_scale(leave, 1.0 / 3), last = vec3_scale(arrive, 1.0 / 3);
+    quat whole = quat_mul(quat_conjugate(a), b);
+    quat begin = quat_conjugate(zt_rotation_exp(first));
+    quat end = quat_conjugate(zt_rotation_exp(last));
+    return (zt_rotation_arc){
+        {first, zt_rotation_log(quat_mul(quat_mul(begin, whole), end)), last}};
 }
 
 quat zt_rotation_arc_eval(const zt_rotation_arc *arc, quat a, double u) {
     /* The Bernstein polynomials of degree 3, summed up from the last one. */
     double v = 1 - u, b3 = u * u * u, b2 = b3 + 3 * u * u * v, b1 = b2 + 3 * u * v * v;
-    quat q = quat_mul(a, exponential(vec3_scale(arc->turns[0], b1)));
-    q = quat_mul(q, exponential(vec3_scale(arc->turns[1], b2)));
-    return zt_rotation_unit(quat_mul(q, exponential(vec3_scale(arc->turns[2], b3))));
+    quat q = quat_mul(a, zt_rotation_exp(vec3_scale(arc->half_turns[0], b1)));
+    q = quat_mul(q, zt_rotation_exp(vec3_scale(arc->half_turns[1], b2)));
+    return zt_rotation_unit(quat_mul(q, zt_rotation_exp(vec3_scale(arc->half_turns[2], b3))));
+}
+
+/* v + f (turn x v) + g (turn x (turn x v)). */
+static vec3 twisted(vec3 v, vec3 turn, double f, double g) {
+    vec3 once = vec3_cross(turn, v), twice = vec3_cross(turn, once);
+    return vec3_add(v, vec3_add(vec3_scale(once, f), vec3_scale(twice, g)));
+}
+
+vec3 zt_rotation_velocity(vec3 turn, vec3 turn_speed) {
+    double a = vec3_length(turn), half = sin(a / 2);
+    if (!(a > 0)) return turn_speed;
+    /* The series, where a difference would cancel. */
+    double g = a < 1e-2 ? 1.0 / 6 - a * a / 120 : (a - sin(a)) / (a * a * a);
+    return twisted(turn_speed, turn, -2 * (half / a) * (half / a), g);
+}
+
+vec3 zt_rotation_turn_speed(vec3 turn, vec3 velocity) {
+    double a = vec3_length(turn);
+    double g = a < 1e-2 ? 1.0 / 12 + a * a / 720 : (1 / a - 0.5 / tan(a / 2)) / a;
+    return twisted(velocity, turn, 0.5, g);
 }
