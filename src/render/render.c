@@ -51,9 +51,12 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
 /* Numbers the pixels of a tile in blocks of 4 x 4, so that rays that travel in one packet are
  * close together in both directions; those beyond the edge of the picture are left out. */
 static int list_pixels(struct render_thread *own, tile area) {
+    enum { BLOCK = 4, ACROSS = TILE_SIDE / BLOCK };
     int count = 0;
     for (int i = 0; i < ZT_BATCH; i++) {
-        int x = (i >> 4 & 3) * 4 + (i & 3), y = (i >> 6) * 4 + (i >> 2 & 3);
+        int block = i / (BLOCK * BLOCK), within = i % (BLOCK * BLOCK);
+        int x = block % ACROSS * BLOCK + within % BLOCK;
+        int y = block / ACROSS * BLOCK + within / BLOCK;
         own->column[count] = area.x + x;
         own->row[count] = area.y + y;
         count += x < area.width && y < area.height;

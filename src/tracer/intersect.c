@@ -109,21 +109,91 @@ static inline bool any_meets(const lanes *l) {
     return any;
 }
 
+/* The least and the greatest of a batch's origins and directions. */
+typedef struct bundle {
+    real3 origin_low, origin_high, direction_low, direction_high;
+} bundle;
+
+static inline void range(real *restrict low, real *restrict high, const real *restrict values,
+                         int count) {
+    real l[ZT_BATCH_LANES], h[ZT_BATCH_LANES];
+    for (int j = 0; j < ZT_BATCH_LANES; j++) l[j] = h[j] = values[j < count ? j : 0];
+    int whole = count / ZT_BATCH_LANES * ZT_BATCH_LANES;
+    for (int i = 0; i < whole; i += ZT_BATCH_LANES)
+        for (int j = 0; j < ZT_BATCH_LANES; j++) {
+            l[j] = real_min(values[i + j], l[j]);
+            h[j] = real_max(values[i + j], h[j]);
+        }
+    for (int i = whole; i < count; i++) {
+        l[0] = real_min(values[i], l[0]);
+        h[0] = real_max(values[i], h[0]);
+    }
+    *low = l[0];
+    *high = h[0];
+    for (int j = 1; j < ZT_BATCH_LANES; j++) {
+        *low = real_min(*low, l[j]);
+        *high = real_max(*high, h[j]);
+    }
+}
+
+static bundle bundle_of(const zt_batch *r) {
+    bundle b;
+    range(&b.origin_low.x, &b.origin_high.x, r->ox, r->count);
+    range(&b.origin_low.y, &b.origin_high.y, r->oy, r->count);
+    range(&b.origin_low.z, &b.origin_high.z, r->oz, r->count);
+    range(&b.direction_low.x, &b.direction_high.x, r->dx, r->count);
+    range(&b.direction_low.y, &b.direction_high.y, r->dy, r->count);
+    range(&b.direction_low.z, &b.direction_high.z, r->dz, r->count);
+    return b;
+}
+
+/* Narrows the distances enter … leave to those at which some ray of a bundle may be between the
+ * two sides of a box across one axis, by interval arithmetic. What is no number narrows
+ * nothing. */
+static void narrow(double *enter, double *leave, real box_low, real box_high, real origin_low,
+                   real origin_high, real direction_low, real direction_high) {
+    double near = (double)box_low - (double)origin_high; /* how far the way is, at least */
+    double far =
+        (double)box_high - (double)origin_low; /* and at most; either may be negative */
+    double slow = (double)direction_low, fast = (double)direction_high;
+    if (near > 0) *enter = fmax(*enter, fast <= 0 ? INFINITY : near / fast);
+    if (far < 0) *enter = fmax(*enter, slow >= 0 ? INFINITY : far / slow);
+    if (slow > 0) *leave = fmin(*leave, far / slow);
+    if (fast < 0) *leave = fmin(*leave, near / fast);
+}
+
+/* False only where no ray of a bundle meets a box (Boulos, Wald and Shirley, "Geometric and
+ * arithmetic culling methods for entire ray packets", 2006). */
+static bool bundle_meets(const bundle *b, const zt_box *box) {
+    double enter = 0, leave = INFINITY;
+    narrow(&enter, &leave, box->low.x, box->high.x, b->origin_low.x, b->origin_high.x,
+           b->direction_low.x, b->direction_high.x);
+    narrow(&enter, &leave, box->low.y, box->high.y, b->origin_low.y, b->origin_high.y,
+           b->direction_low.y, b->direction_high.y);
+    narrow(&enter, &leave, box->low.z, box->high.z, b->origin_low.z, b->origin_high.z,
+           b->direction_low.z, b->direction_high.z);
+    return enter <= leave * (1 + 0x1p-40);
+}
+
 /* Lists the rays that may meet a mesh before their t; `open_only` leaves out the ones that have
  * met something. */
 static int list_mesh_rays(int32_t *restrict list, const zt_batch *restrict rays,
                           const zt_tracer *tracer, bool open_only) {
-    const zt_placed_hull *hulls;
-    int hull_count = zt_meshes_hulls(&hulls, tracer->meshes), count = 0;
+    const zt_placed_hull *all, *hulls[ZT_HULLS_MAX];
+    int all_count = zt_meshes_hulls(&all, tracer->meshes), hull_count = 0, count = 0;
+    bundle b = bundle_of(rays);
+    for (int h = 0; h < all_count; h++)
+        if (bundle_meets(&b, &all[h].around)) hulls[hull_count++] = &all[h];
+    if (hull_count == 0) return 0;
     for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) {
         int32_t meets[ZT_BATCH_LANES] = {0};
         for (int h = 0; h < hull_count; h++) {
             lanes l;
-            enter_hull(&l, rays, first, &hulls[h]);
-            meet_box(&l, *hulls[h].whole);
+            enter_hull(&l, rays, first, hulls[h]);
+            meet_box(&l, *hulls[h]->whole);
             if (!any_meets(&l)) continue;
             memset(l.meets, 0, sizeof l.meets);
-            for (int b = 0; b < hulls[h].part_count; b++) meet_box(&l, hulls[h].parts[b]);
+            for (int p = 0; p < hulls[h]->part_count; p++) meet_box(&l, hulls[h]->parts[p]);
             for (int j = 0; j < ZT_BATCH_LANES; j++) meets[j] |= l.meets[j];
         }
         for (int j = 0; j < ZT_BATCH_LANES && first + j < rays->count; j++) {

@@ -10,7 +10,7 @@
 
 #include "base/diag.h"
 
-enum { LANES = 16, HULLS_MAX = 32, PARTS_MAX = 128 };
+enum { LANES = 16, PARTS_MAX = 128 };
 
 /* How much further than the nearest hit so far Embree looks, for the roundings of its
  * distances. */
@@ -37,8 +37,8 @@ struct zt_meshes {
     int32_t placed_count, instance_count, instance_capacity;
     int32_t *placed_of_primitive;
     int32_t primitive_capacity;
-    /* One for each placed mesh; with more than HULLS_MAX the last one holds all the rest. */
-    zt_placed_hull placed_hulls[HULLS_MAX];
+    /* One for each placed mesh; with more than ZT_HULLS_MAX the last one holds all the rest. */
+    zt_placed_hull placed_hulls[ZT_HULLS_MAX];
     zt_box rest;
 };
 
@@ -198,6 +198,25 @@ static double box_size(const zt_box *box) {
     return fmax(vec3_max_abs(low), vec3_max_abs(high));
 }
 
+/* A box around a placed mesh: its bounds, turned into the space relative to the camera. */
+static zt_box box_around(const placed_mesh *placed) {
+    const xform *m = &placed->place;
+    vec3 half = vec3_scale(vec3_sub(placed->mesh->high, placed->mesh->low), 0.5);
+    vec3 center = xform_point(m, vec3_add(placed->mesh->low, half));
+    double room = 0x1p-20 * placed->extent; /* far more than the roundings */
+    vec3 reach = {fabs(m->x.x) * half.x + fabs(m->y.x) * half.y + fabs(m->z.x) * half.z + room,
+                  fabs(m->x.y) * half.x + fabs(m->y.y) * half.y + fabs(m->z.y) * half.z + room,
+                  fabs(m->x.z) * half.x + fabs(m->y.z) * half.y + fabs(m->z.z) * half.z + room};
+    vec3 low = vec3_sub(center, reach), high = vec3_add(center, reach);
+    return (zt_box){row_of(low.x, low.y, low.z), row_of(high.x, high.y, high.z)};
+}
+
+static zt_box box_of_both(zt_box a, zt_box b) {
+    return (zt_box){
+        {fminf(a.low.x, b.low.x), fminf(a.low.y, b.low.y), fminf(a.low.z, b.low.z)},
+        {fmaxf(a.high.x, b.high.x), fmaxf(a.high.y, b.high.y), fmaxf(a.high.z, b.high.z)}};
+}
+
 /* The hull of a placed mesh, with the parts of one level. */
 static zt_placed_hull place_hull(const zt_meshes *m, const placed_mesh *placed, int level) {
     const zt_hull *hull = m->hulls[placed->mesh - m->meshes];
@@ -212,42 +231,27 @@ static zt_placed_hull place_hull(const zt_meshes *m, const placed_mesh *placed, 
         .at = row_of(back.shift.x, back.shift.y, back.shift.z),
         .reach = (real)reach,
         .size = (real)(reach * vec3_max_abs(place.shift) + box_size(&hull->boxes[1])),
+        .around = box_around(placed),
         .whole = &hull->boxes[1],
         .parts = &hull->boxes[1 << level],
         .part_count = 1 << level};
 }
 
-/* Grows the box of the rest by a placed mesh: its bounds, turned into the space of the camera.
- */
-static void add_to_rest(zt_box *rest, const placed_mesh *placed) {
-    const xform *m = &placed->place;
-    vec3 half = vec3_scale(vec3_sub(placed->mesh->high, placed->mesh->low), 0.5);
-    vec3 center = xform_point(m, vec3_add(placed->mesh->low, half));
-    vec3 reach = {fabs(m->x.x) * half.x + fabs(m->y.x) * half.y + fabs(m->z.x) * half.z,
-                  fabs(m->x.y) * half.x + fabs(m->y.y) * half.y + fabs(m->z.y) * half.z,
-                  fabs(m->x.z) * half.x + fabs(m->y.z) * half.y + fabs(m->z.z) * half.z};
-    vec3 low = vec3_sub(center, reach), high = vec3_add(center, reach);
-    rest->low = (real3){fminf(rest->low.x, (real)low.x), fminf(rest->low.y, (real)low.y),
-                        fminf(rest->low.z, (real)low.z)};
-    rest->high = (real3){fmaxf(rest->high.x, (real)high.x), fmaxf(rest->high.y, (real)high.y),
-                         fmaxf(rest->high.z, (real)high.z)};
-}
-
 static void place_hulls(zt_meshes *m) {
-    bool crowd = m->placed_count > HULLS_MAX;
-    int32_t single_count = crowd ? HULLS_MAX - 1 : m->placed_count;
+    bool crowd = m->placed_count > ZT_HULLS_MAX;
+    int32_t single_count = crowd ? ZT_HULLS_MAX - 1 : m->placed_count;
     int level = 0;
     while (level + 1 < ZT_HULL_LEVELS && (single_count << (level + 1)) <= PARTS_MAX) level++;
     for (int32_t i = 0; i < single_count; i++)
         m->placed_hulls[i] = place_hull(m, &m->placed[i], level);
     if (!crowd) return;
-    m->rest = (zt_box){{REAL_INFINITY, REAL_INFINITY, REAL_INFINITY},
-                       {-REAL_INFINITY, -REAL_INFINITY, -REAL_INFINITY}};
-    for (int32_t i = single_count; i < m->placed_count; i++)
-        add_to_rest(&m->rest, &m->placed[i]);
+    m->rest = box_around(&m->placed[single_count]);
+    for (int32_t i = single_count + 1; i < m->placed_count; i++)
+        m->rest = box_of_both(m->rest, box_around(&m->placed[i]));
     m->placed_hulls[single_count] = (zt_placed_hull){.rows = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                                      .reach = 1,
                                                      .size = (real)box_size(&m->rest),
+                                                     .around = m->rest,
                                                      .whole = &m->rest,
                                                      .parts = &m->rest,
                                                      .part_count = 1};
@@ -263,7 +267,7 @@ zt_status zt_meshes_commit(zt_meshes *m) {
 
 int zt_meshes_hulls(const zt_placed_hull **hulls, const zt_meshes *m) {
     *hulls = m->placed_hulls;
-    return m->placed_count < HULLS_MAX ? m->placed_count : HULLS_MAX;
+    return m->placed_count < ZT_HULLS_MAX ? m->placed_count : ZT_HULLS_MAX;
 }
 
 static void corners(vec3 *corner, const placed_mesh *placed, int32_t triangle) {
@@ -322,6 +326,8 @@ void zt_meshes_intersect(const zt_meshes *m, zt_batch *rays, const int32_t *list
                          int list_count) {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
+    context.flags =
+        RTC_INTERSECT_CONTEXT_FLAG_COHERENT; /* half the time, also for mirrored rays */
     for (int first = 0; first < list_count; first += LANES) {
         alignas(64) int valid[LANES];
         alignas(64) struct RTCRayHit16 packet;

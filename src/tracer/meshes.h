@@ -33,16 +33,20 @@ zt_status zt_meshes_place(zt_meshes *meshes, int32_t mesh, int32_t primitive,
 /* Makes the placed meshes ready for rays. */
 zt_status zt_meshes_commit(zt_meshes *meshes);
 
-/* The hull of a placed mesh: boxes in the mesh's space, and the way there. A point p relative
+/* The hull of a placed mesh: a box around it in the space relative to the camera, boxes in the
+ * mesh's space, and the way there. A point p relative
  * to the camera is at (row . p) + at, give or take rounding * (reach * max |p| + size). */
 typedef struct zt_placed_hull {
     real3 rows[3];
     real3 at;
     real reach, size;
+    zt_box around;
     const zt_box *whole;
     const zt_box *parts;
     int part_count;
 } zt_placed_hull;
+
+enum { ZT_HULLS_MAX = 32 };
 
 /* Hulls that hold all that is placed; few, however many meshes there are. Rays that meet none
  * of them need not be asked about below. Valid until the next frame begins. */
