@@ -201,7 +201,8 @@ static zt_status add_track(zt_reading *reading, const zt_property *property, int
     memcpy(full_name, name, name_length);
     full_name[name_length] = '.';
     memcpy(full_name + name_length + 1, property->name, size - name_length - 1);
-    link->track = (zt_track){property, index, full_name, *curve};
+    link->track = (zt_track){
+        .property = property, .index = index, .name = full_name, .curve = *curve};
     if (reading->last_track)
         reading->last_track->next = link;
     else

@@ -5,6 +5,7 @@
 #include <zoetrope/animation.h>
 
 #include "base/arena.h"
+#include "base/diag.h"
 #include "keyframe/curve.h"
 #include "keyframe/property.h"
 #include "scene/scene.h"
@@ -15,6 +16,8 @@ typedef struct zt_track {
     int32_t index;    /* which of the owner's things, as zt_property_set takes it */
     const char *name; /* "ball.center" */
     zt_curve curve;
+    zt_place place;             /* of the property in the description */
+    const zt_place *key_places; /* one per key of the curve; NULL where none is known */
 } zt_track;
 
 /* The struct itself is the reader's calloc; zt_animation_free gives it back. */
