@@ -29,6 +29,7 @@ set(header_zoetrope cli)
 
 # Each foreign header, by the beginning of its name, and its one door.
 set(doors
+    "dlfcn.h|base/module.c"
     "pthread.h|base/pool.c"
     "xxh|base/hash.c"
     "OpenImageIO/|image/file.cpp"
@@ -39,8 +40,8 @@ set(doors
     "libsw|encode/video.c"
     "SDL|cli/preview.c")
 
-# Headers of C, C++ and POSIX that any file may include.
-set(common "^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
+# Headers of C and POSIX that any file may include, and those of C++, which have no ending.
+set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
 signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
 unistd|sys/[a-z]+)(\\.h)?$")
 

@@ -9,7 +9,7 @@
 #include "image/file.h"
 #include <zoetrope/output.h>
 
-static const zt_output_format format = {16, 12, {24, 1}, ZT_VIEW_SRGB};
+static const zt_output_format format = {16, 12, {24, 1}, ZT_VIEW_SRGB, 0};
 
 static zt_output *open_output(const char *target) {
     heard h;
@@ -142,6 +142,14 @@ static void single_image(void **state) {
     assert_frame("one/two.png", 5);
     assert_int_equal(entry_count("one"), 2);
     zt_image_free(&image);
+
+    /* Told beforehand that more will come, it is refused before the first. */
+    zt_output_format several = format;
+    several.frame_count = 2;
+    assert_int_equal(zt_output_open(&output, "one/three.png", &several, listener_of(&h)),
+                     ZT_EARGUMENT);
+    assert_null(output);
+    assert_int_equal(entry_count("one"), 2);
 }
 
 /* Endings that do not exist: the message names those that do, and the nearest. */

@@ -20,6 +20,7 @@ typedef struct zt_output_format {
     int width, height;
     zt_rate rate;
     zt_view view;
+    int64_t frame_count; /* how many will come; 0 where that is not known */
 } zt_output_format;
 
 /* Opens an output, chosen by the name of `target`:

@@ -32,7 +32,7 @@ zt_status zt_renderer_open(zt_renderer **renderer, const zt_animation *animation
                            const zt_render_settings *settings, zt_listener listener);
 void zt_renderer_close(zt_renderer **renderer);
 
-/* What an output for this renderer's images has to be told. */
+/* What an output for this renderer's images has to be told, but for how many come. */
 zt_output_format zt_renderer_format(const zt_renderer *renderer);
 
 /* Renders one frame into an image of the renderer's size. Frames outside of the film's range

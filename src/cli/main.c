@@ -94,6 +94,7 @@ static void say_interrupted(const zt_progress *progress, const char *target) {
 static zt_status write_frames(zt_renderer *renderer, int64_t first, int64_t last,
                               const char *target, zt_report *report) {
     zt_output_format format = zt_renderer_format(renderer);
+    format.frame_count = last - first + 1;
     zt_output *output = NULL;
     listen_for_interrupts();
     zt_status status = zt_output_open(&output, target, &format, zt_report_listener(report));

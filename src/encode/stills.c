@@ -81,6 +81,12 @@ static zt_status probe(const char *target, zt_listener listener) {
     return ZT_OK;
 }
 
+static zt_status refuse_several(const stills *images) {
+    return refuse(images, images->before,
+                  "there is more than one frame, and only one would be left; write #### where "
+                  "the frame number goes");
+}
+
 static zt_status open_stills(void **state, const char *target, const zt_output_format *format,
                              zt_listener listener) {
     stills *images = calloc(1, sizeof *images);
@@ -88,6 +94,8 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
     images->view = format->view;
     images->listener = listener;
     zt_status status = read_pattern(images, target);
+    if (status == ZT_OK && !images->after && format->frame_count > 1)
+        status = refuse_several(images);
     if (status == ZT_OK) status = probe(target, listener);
     if (status == ZT_OK)
         *state = images;
@@ -115,10 +123,7 @@ static zt_status write_stills(void *state, const zt_image *image, int64_t frame)
         free(path);
         return status;
     }
-    if (images->single_written)
-        return refuse(images, images->before,
-                      "there is more than one frame, and only one would be left; write #### "
-                      "where the frame number goes");
+    if (images->single_written) return refuse_several(images);
     images->single_written = true;
     return write_image(images, image, images->before);
 }
