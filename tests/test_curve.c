@@ -10,9 +10,10 @@
 
 #include <cmocka.h>
 
+#include <zoetrope/rate.h>
+
 #include "base/pool.h"
-#include "draw.h"
-#include "keyframe/curve.h"
+#include "keys.h"
 #include "real.h"
 
 enum { KEYS_MAX = 64 };
@@ -23,25 +24,6 @@ static zt_curve make(zt_arena *arena, zt_curve_kind kind, zt_value_kind value_ki
     assert_int_equal(zt_curve_make(&curve, arena, kind, value_kind, count, times, values),
                      ZT_OK);
     return curve;
-}
-
-static double eval1(const zt_curve *curve, double time_s) {
-    double value[ZT_VALUE_WIDTH_MAX];
-    zt_curve_eval(value, curve, time_s);
-    return value[0];
-}
-
-static void assert_near(double found, double expected, double tolerance) {
-    if (!(fabs(found - expected) <= tolerance)) fail_msg("%.17g is not %.17g", found, expected);
-}
-
-/* Rising times with spacings between the two. */
-static void draw_times(draw *d, double *times, int count, double low, double high) {
-    times[0] = draw_between(d, -1, 1) * high;
-    for (int k = 1; k < count; k++) {
-        times[k] = times[k - 1] + draw_magnitude(d, low, high);
-        if (!(times[k] > times[k - 1])) times[k] = nextafter(times[k - 1], INFINITY);
-    }
 }
 
 /* Hold, linear and smooth at times for which paper gives the value. */
@@ -228,6 +210,17 @@ static void smooth_has_no_corner(void **state) {
     zt_arena_free(&arena);
 }
 
+/* A frame's time is the double nearest to the true one, however long the film. */
+static void frame_times(void **state) {
+    (void)state;
+    const zt_rate rates[] = {{24, 1}, {25, 1}, {30000, 1001}, {24000, 1001}, {60000, 1001}};
+    for (int r = 0; r < 5; r++)
+        for (int64_t n = 0; n <= 100000000; n += n < 100000 ? 1 : 9973) {
+            double expected = (double)((real)n * rates[r].den / rates[r].num);
+            if (zt_rate_time(rates[r], n) != expected) fail_msg("frame %lld", (long long)n);
+        }
+}
+
 typedef struct query {
     const zt_curve *curve;
     const double *times;
@@ -304,10 +297,11 @@ static void unsound_keys(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_forms),          cmocka_unit_test(kinds_of_values),
-        cmocka_unit_test(exact_at_keys),         cmocka_unit_test(never_leaves_its_keys),
-        cmocka_unit_test(smooth_is_steffens),    cmocka_unit_test(smooth_has_no_corner),
-        cmocka_unit_test(order_does_not_matter), cmocka_unit_test(unsound_keys),
+        cmocka_unit_test(closed_forms),       cmocka_unit_test(kinds_of_values),
+        cmocka_unit_test(exact_at_keys),      cmocka_unit_test(never_leaves_its_keys),
+        cmocka_unit_test(smooth_is_steffens), cmocka_unit_test(smooth_has_no_corner),
+        cmocka_unit_test(frame_times),        cmocka_unit_test(order_does_not_matter),
+        cmocka_unit_test(unsound_keys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

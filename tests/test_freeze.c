@@ -11,6 +11,8 @@
 
 #include "keyframe/animation.h"
 
+static const double pi = 3.14159265358979323846;
+
 enum { OBJECTS = 10, LIGHTS = 4, MATERIALS = 3 };
 
 /* One thing of each owner, and a second one that must stay as it is. */
@@ -178,6 +180,49 @@ static void many_properties_move(void **state) {
     zt_arena_free(&frame);
 }
 
+/* A value that a curve carries out of its property's range stops there: no negative radius, no
+ * mirror that gives more than it gets, no opening beyond half a turn. */
+static void out_of_range(void **state) {
+    (void)state;
+    static const struct {
+        zt_owner owner;
+        const char *name;
+        int index;
+        double low, high; /* in the scene's units */
+    } cases[] = {{ZT_OWNER_SPHERE, "radius", 1, 0, INFINITY},
+                 {ZT_OWNER_MATERIAL, "reflectivity", 0, 0, 1},
+                 {ZT_OWNER_MATERIAL, "color", 1, 0, INFINITY},
+                 {ZT_OWNER_CAMERA, "fov", 0, 1e-6 * pi / 180, 179.9 * pi / 180},
+                 {ZT_OWNER_PLANE, "distance", 0, -INFINITY, INFINITY}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        zt_animation *animation = create();
+        zt_arena frame = {0};
+        const double values[2][3] = {{0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}};
+        const zt_key keys[] = {{.time_s = 0, .value = values[0], .kind = ZT_CURVE_LINEAR},
+                               {.time_s = 1, .value = values[1], .kind = ZT_CURVE_LINEAR}};
+        zt_track *track = ZT_PUSH(&animation->arena, zt_track, 1);
+        *track = (zt_track){.property = zt_property_find(cases[i].owner, cases[i].name),
+                            .index = cases[i].index};
+        zt_curve_spec spec = {.value_kind = track->property->kind,
+                              .key_count = 2,
+                              .keys = keys,
+                              .before = ZT_END_LINEAR,
+                              .after = ZT_END_LINEAR};
+        assert_int_equal(zt_curve_from_keys(&track->curve, &animation->arena, &spec), ZT_OK);
+        animation->tracks = track;
+        animation->track_count = 1;
+        for (double t = -40; t <= 40; t += 8) {
+            zt_scene scene;
+            zt_arena_reset(&frame);
+            assert_int_equal(zt_animation_freeze(&scene, animation, t, &frame), ZT_OK);
+            assert_reads(&scene, cases[i].owner, cases[i].name, cases[i].index,
+                         fmin(fmax(0.25 + 0.25 * t, cases[i].low), cases[i].high));
+        }
+        zt_animation_free(&animation);
+        zt_arena_free(&frame);
+    }
+}
+
 /* A scene of nothing at all freezes. */
 static void nothing(void **state) {
     (void)state;
@@ -226,6 +271,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_property_moves),
         cmocka_unit_test(many_properties_move),
+        cmocka_unit_test(out_of_range),
         cmocka_unit_test(nothing),
         cmocka_unit_test(summary),
     };

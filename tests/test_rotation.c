@@ -44,7 +44,7 @@ static void slerp_is_exact(void **state) {
     if (!REAL_IS_QUAD) skip();
     draw d = {1, 0};
     double worst_angle = 0, worst_length = 0;
-    for (int round = 0; round < 60000; round++) {
+    for (int round = 0; round < 20000; round++) {
         quat a = draw_rotation(&d);
         double separation = draw_magnitude(&d, 1e-12, pi / 2);
         if (round % 2) separation = pi - draw_magnitude(&d, 1e-9, pi / 2);
@@ -61,6 +61,113 @@ static void slerp_is_exact(void **state) {
     assert_true(worst_angle <= 1e-12);
     assert_true(worst_length <= 4);
 }
+
+/* ---- as they are written -------------------------------------------------------------------
+ */
+
+static void assert_vec(vec3 found, vec3 expected, double tolerance) {
+    if (vec3_length(vec3_sub(found, expected)) <= tolerance) return;
+    fail_msg("(%.17g, %.17g, %.17g) is not (%.17g, %.17g, %.17g)", found.x, found.y, found.z,
+             expected.x, expected.y, expected.z);
+}
+
+static vec3 turned(quat q, vec3 v) {
+    xform m = xform_place((vec3){0, 0, 0}, q, (vec3){1, 1, 1});
+    return xform_vector(&m, v);
+}
+
+/* Euler angles in all six orders, against turning a vector around one axis after the other. */
+static void euler_orders(void **state) {
+    (void)state;
+    static const char *const orders[] = {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
+    draw d = {6, 0};
+    for (int i = 0; i < 6; i++) {
+        assert_true(zt_rotation_order_is_sound(orders[i]));
+        for (int round = 0; round < 100; round++) {
+            vec3 angles = {draw_between(&d, -9, 9), draw_between(&d, -9, 9),
+                           draw_between(&d, -9, 9)};
+            vec3 v = {0.3, -0.5, 0.8}, expected = v;
+            for (int k = 0; k < 3; k++) {
+                double angle = (&angles.x)[orders[i][k] - 'x'], c = cos(angle), s = sin(angle);
+                double *e = &expected.x, *p = &e[(orders[i][k] - 'x' + 1) % 3],
+                       *q = &e[(orders[i][k] - 'x' + 2) % 3];
+                double turned_p = c * *p - s * *q;
+                *q = s * *p + c * *q;
+                *p = turned_p;
+            }
+            assert_vec(turned(zt_rotation_euler(angles, orders[i]), v), expected, 1e-14);
+        }
+    }
+    static const char *const wrong[] = {"", "xy", "xyzx", "xxy", "XYZ", "xyw", "zxz"};
+    for (int i = 0; i < 7; i++) assert_false(zt_rotation_order_is_sound(wrong[i]));
+}
+
+/* Looking: -z points there, y is up, x is level; as a camera that is aimed looks, roll apart.
+ */
+static void looking(void **state) {
+    (void)state;
+    draw d = {7, 0};
+    for (int round = 0; round < 2000; round++) {
+        zt_camera camera = {.aimed = true};
+        double *numbers[] = {&camera.look_at.x, &camera.look_at.y, &camera.look_at.z,
+                             &camera.up.x,      &camera.up.y,      &camera.up.z};
+        for (int i = 0; i < 6; i++) *numbers[i] = draw_between(&d, -1, 1);
+        if (round % 10 == 0) camera.up = vec3_scale(camera.look_at, draw_between(&d, -2, 2));
+        if (round % 100 == 1) camera.look_at = (vec3){0, 0, -1};
+        xform expected = zt_camera_xform(&camera);
+        quat q = zt_rotation_look(camera.look_at, camera.up, 0);
+        assert_true(length_error_ulp(q) <= 4);
+        assert_vec(turned(q, (vec3){1, 0, 0}), expected.x, 1e-14);
+        assert_vec(turned(q, (vec3){0, 1, 0}), expected.y, 1e-14);
+        assert_vec(turned(q, (vec3){0, 0, 1}), expected.z, 1e-14);
+        double roll = draw_between(&d, -9, 9);
+        q = zt_rotation_look(camera.look_at, camera.up, roll);
+        assert_vec(turned(q, (vec3){0, 0, 1}), expected.z, 1e-14);
+        assert_vec(
+            turned(q, (vec3){1, 0, 0}),
+            vec3_add(vec3_scale(expected.x, cos(roll)), vec3_scale(expected.y, sin(roll))),
+            1e-14);
+    }
+    assert_vec(turned(zt_rotation_look((vec3){0}, (vec3){0, 1, 0}, pi / 2), (vec3){1, 0, 0}),
+               (vec3){0, 1, 0}, 1e-15);
+}
+
+/* The angle between two rotations, told as exactly for 1e-150 as for nearly half a turn. */
+static void angles_between(void **state) {
+    (void)state;
+    for (double angle = 1e-150; angle < 3; angle *= 1.7) {
+        quat q = zt_rotation_of_turn((vec3){0, angle, 0});
+        assert_true(fabs(zt_rotation_angle(quat_identity(), q) / angle - 1) < 1e-15);
+        assert_true(fabs(zt_rotation_angle(quat_scale(q, -1), quat_identity()) / angle - 1) <
+                    1e-15);
+    }
+    quat half = zt_rotation_of_turn((vec3){pi - 1e-9, 0, 0});
+    assert_true(fabs(zt_rotation_angle(quat_identity(), half) - (pi - 1e-9)) < 1e-15);
+    half = zt_rotation_of_turn((vec3){7 * pi, 0, 0});
+    assert_true(fabs(zt_rotation_angle(quat_identity(), half) - pi) < 1e-15);
+}
+
+/* The velocity of a turn that moves, against what the rotation does in a moment; and back. */
+static void velocities(void **state) {
+    (void)state;
+    draw d = {8, 0};
+    for (int round = 0; round < 5000; round++) {
+        vec3 turn = {draw_between(&d, -2, 2), draw_between(&d, -2, 2), draw_between(&d, -2, 2)};
+        vec3 speed = {draw_between(&d, -2, 2), draw_between(&d, -2, 2),
+                      draw_between(&d, -2, 2)};
+        if (round % 2) turn = vec3_scale(turn, draw_magnitude(&d, 1e-12, 1));
+        const double h = 1e-5;
+        quat before = zt_rotation_of_turn(vec3_sub(turn, vec3_scale(speed, h)));
+        quat after = zt_rotation_of_turn(vec3_add(turn, vec3_scale(speed, h)));
+        vec3 step = zt_rotation_log(quat_mul(quat_conjugate(before), after));
+        vec3 velocity = zt_rotation_velocity(turn, speed);
+        assert_vec(velocity, vec3_scale(step, 1 / h), 1e-8);
+        assert_vec(zt_rotation_turn_speed(turn, velocity), speed, 1e-13);
+    }
+}
+
+/* ---- between them --------------------------------------------------------------------------
+ */
 
 static zt_curve make(zt_arena *arena, zt_curve_kind kind, int count, const double *times,
                      const quat *keys) {
@@ -238,7 +345,8 @@ static void odd_keys(void **state) {
                 int k = draw_below(&d, 4);
                 quat q = eval(&curve, times[k] + draw_unit(&d) * (times[k + 1] - times[k]));
                 if (!(length_error_ulp(q) <= 4))
-                    fail_msg("kind %d (%.17g %.17g %.17g %.17g) is no rotation", kind, q.w, q.x, q.y, q.z);
+                    fail_msg("kind %d (%.17g %.17g %.17g %.17g) is no rotation", kind, q.w, q.x,
+                             q.y, q.z);
             }
         }
     }
@@ -247,6 +355,10 @@ static void odd_keys(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(euler_orders),
+        cmocka_unit_test(looking),
+        cmocka_unit_test(angles_between),
+        cmocka_unit_test(velocities),
         cmocka_unit_test(slerp_is_exact),
         cmocka_unit_test(the_short_way),
         cmocka_unit_test(half_turns),

@@ -73,7 +73,7 @@ static void unroll(zt_curve_spot *spot, const zt_curve *curve, bool back_and_for
     if (rest + tolerance >= span) rest = 0, spot->round++;
     double time_s = back_and_forth && fmod(spot->round, 2) != 0 ? last - rest : first + rest;
     double key_s = curve->times[key_before(curve, time_s + tolerance)];
-    spot->time_s = key_s > time_s ? key_s : time_s;
+    spot->time_s = fabs(key_s - time_s) <= tolerance ? key_s : time_s;
 }
 
 static void leave_keys(zt_curve_spot *spot, const zt_curve *curve, zt_curve_end end,

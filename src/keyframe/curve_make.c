@@ -93,16 +93,16 @@ static zt_status copy_keys(zt_curve *curve, zt_arena *arena, const zt_curve_spec
     return ZT_OK;
 }
 
-static zt_status copy_kinds(zt_curve *curve, zt_arena *arena, const zt_key *keys) {
+/* Switches and springs have no ways of their own. */
+static zt_status copy_kinds(zt_curve *curve, zt_arena *arena, const zt_key *keys, bool hold) {
     size_t count = (size_t)curve->key_count;
     uint8_t *kinds = ZT_PUSH(arena, uint8_t, count);
     const zt_ease **eases = NULL;
     if (!kinds) return ZT_EMEMORY;
     for (size_t k = 0; k + 1 < count; k++) {
         const zt_key *key = &keys[k];
-        bool is_switch = curve->value_kind == ZT_VALUE_SWITCH;
-        kinds[k] = (uint8_t)(is_switch ? ZT_CURVE_HOLD : key->kind);
-        if (!key->ease) continue;
+        kinds[k] = (uint8_t)(hold ? ZT_CURVE_HOLD : key->kind);
+        if (hold || !key->ease) continue;
         if (!eases && !(eases = ZT_PUSH(arena, const zt_ease *, count))) return ZT_EMEMORY;
         eases[k] = key->ease;
     }
@@ -205,7 +205,7 @@ zt_status zt_curve_from_keys(zt_curve *curve, zt_arena *arena, const zt_curve_sp
     if (springs && curve->before == ZT_END_LINEAR) curve->before = ZT_END_HOLD;
     if (springs && curve->after == ZT_END_LINEAR) curve->after = ZT_END_HOLD;
     ZT_TRY(copy_keys(curve, arena, spec));
-    ZT_TRY(copy_kinds(curve, arena, spec->keys));
+    ZT_TRY(copy_kinds(curve, arena, spec->keys, is_switch || springs));
     if (springs) return make_spring(curve, arena, spec->spring);
     ZT_TRY(zt_curve_make_controls(curve, arena, spec->keys));
     return make_end_speeds(curve, arena);
