@@ -401,9 +401,9 @@ static void refused(void **state) {
     const zt_key wrong[] = {
         {.time_s = 1, .value = none},
         {.time_s = 1, .value = NULL},
-        {.time_s = 1, .value = value, .after = none},
+        {.time_s = 1, .value = value, .kind = ZT_CURVE_HERMITE, .after = none},
         {.time_s = 1, .value = value, .before = none},
-        {.time_s = 1, .value = value, .after_s = -1},
+        {.time_s = 1, .value = value, .kind = ZT_CURVE_BEZIER, .after_s = -1},
         {.time_s = 1, .value = value, .before_s = NAN},
         {.time_s = 1, .value = value, .tension = INFINITY},
         {.time_s = 0, .value = value},

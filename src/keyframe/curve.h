@@ -49,22 +49,27 @@ typedef enum zt_curve_space {
                         degrees is two rounds, and the long way is not cut short */
 } zt_curve_space;
 
-/* A key, and the way from it to the next one. Arrays are as wide as the value, and may be NULL
- * for none; all of it is only read while the curve is made, but for `ease`. */
+/* A key, and the way from it to the next one. All of it is only read while the curve is made,
+ * but for `ease`. */
 typedef struct zt_key {
     double time_s;
-    const double *value; /* zt_value_width() doubles; 3 in ZT_SPACE_TURNS: axis times radians */
+    const double *value; /* zt_value_width() doubles; in ZT_SPACE_TURNS 3, axis times radians */
     zt_curve_kind kind;
-    const zt_ease *ease; /* spreads the way over its time; not of hold and bezier; must live as
-                            long as the curve */
-    /* ZT_CURVE_BEZIER: where the handles are from the key; the one before it belongs to the way
-     * that comes to it. Times count away from the key, and are at least 0; a handle that is
-     * longer than its way is shortened to it. Values of rotations are turns in the key's frame,
-     * three wide. Without values, handles are as smooth's are. ZT_CURVE_HERMITE: values are the
-     * derivatives, a second, of the way that comes and of the way that goes; of quaternions
-     * componentwise. NULL for zero. */
+    const zt_ease *ease; /* or NULL; spreads the way over its time. Not of hold and bezier. Must
+                            live as long as the curve */
+
+    /* Of the way that comes to the key, `before`, and of the way that goes from it, `after`, in
+     * the curve's space.
+     *
+     * ZT_CURVE_BEZIER: where the handles are, seen from the key, and how many seconds away, at
+     * least 0; one that is longer than its way is shortened to it. Handles of rotations are
+     * turns in the key's frame, 3 wide. NULL: as a smooth way has it; with 0 s, a third of the
+     * way.
+     *
+     * ZT_CURVE_HERMITE: derivatives, a second; of quaternions componentwise. NULL: zero. */
     const double *before, *after;
     double before_s, after_s;
+
     double tension, continuity, bias; /* ZT_CURVE_TCB; 0, 0, 0 is a cubic through the keys */
 } zt_key;
 

@@ -15,15 +15,13 @@ static bool all_finite(const double *numbers, int32_t count) {
     return true;
 }
 
-static bool key_is_sound(const zt_curve *curve, const zt_key *key) {
-    int32_t width = curve->space == ZT_SPACE_VALUES ? curve->width : 3;
-    int32_t handle_width =
-        zt_curve_is_on_sphere(curve) && key->kind == ZT_CURVE_BEZIER ? 3 : curve->point_width;
-    return isfinite(key->time_s) && key->value && all_finite(key->value, width) &&
-           all_finite(key->before, handle_width) && all_finite(key->after, handle_width) &&
-           key->before_s >= 0 && key->after_s >= 0 && isfinite(key->before_s) &&
-           isfinite(key->after_s) && isfinite(key->tension) && isfinite(key->continuity) &&
-           isfinite(key->bias);
+/* A handle of a way of this kind; others are not read. */
+static bool handle_is_sound(const zt_curve *curve, const double *value, double time_s,
+                            zt_curve_kind kind) {
+    if (kind != ZT_CURVE_BEZIER && kind != ZT_CURVE_HERMITE) return true;
+    bool is_turn = zt_curve_is_on_sphere(curve) && kind == ZT_CURVE_BEZIER;
+    return all_finite(value, is_turn ? 3 : curve->point_width) && time_s >= 0 &&
+           isfinite(time_s);
 }
 
 static bool is_sound(const zt_curve *curve, const zt_curve_spec *spec) {
@@ -31,8 +29,14 @@ static bool is_sound(const zt_curve *curve, const zt_curve_spec *spec) {
     if (spec->space == ZT_SPACE_OKLAB && spec->value_kind != ZT_VALUE_COLOR) return false;
     if (spec->space == ZT_SPACE_TURNS && spec->value_kind != ZT_VALUE_ROTATION) return false;
     for (int32_t k = 0; k < spec->key_count; k++) {
-        if (!key_is_sound(curve, &spec->keys[k])) return false;
-        if (k > 0 && !(spec->keys[k].time_s > spec->keys[k - 1].time_s)) return false;
+        const zt_key *key = &spec->keys[k];
+        zt_curve_kind arriving = k > 0 ? key[-1].kind : ZT_CURVE_HOLD;
+        const double shape[] = {key->tension, key->continuity, key->bias};
+        if (!isfinite(key->time_s) || (k > 0 && !(key->time_s > key[-1].time_s))) return false;
+        if (!key->value || !all_finite(key->value, curve->point_width)) return false;
+        if (!handle_is_sound(curve, key->before, key->before_s, arriving)) return false;
+        if (!handle_is_sound(curve, key->after, key->after_s, key->kind)) return false;
+        if (!all_finite(shape, 3)) return false;
     }
     return true;
 }
