@@ -94,6 +94,29 @@ static void camera_by_aim(void **state) {
     assert_true(fabs(m.x.y) < 1e-15 && m.y.y > 0); /* the horizon is level */
 }
 
+/* A rolled camera leans to its left: aimed or turned, what was to its upper left stands above.
+ * The view itself does not move. */
+static void camera_rolled(void **state) {
+    (void)state;
+    const zt_camera cameras[] = {
+        {.position = {5, 0, 5}, .look_at = {5, 0, -1}, .up = {0, 1, 0}, .aimed = true},
+        {.position = {5, 0, 5}, .rotation = quat_identity()}};
+    for (int i = 0; i < 2; i++) {
+        zt_camera camera = cameras[i];
+        camera.roll = pi / 6;
+        xform m = zt_camera_xform(&camera);
+        assert_rigid(&m);
+        assert_vec(m.x, (vec3){sqrt(3) / 2, 0.5, 0});
+        assert_vec(m.y, (vec3){-0.5, sqrt(3) / 2, 0});
+        assert_vec(m.z, (vec3){0, 0, 1});
+        assert_vec(m.shift, (vec3){5, 0, 5});
+    }
+    zt_camera camera = {.rotation = quat_axis_angle((vec3){0, 1, 0}, pi / 2), .roll = pi / 2};
+    xform m = zt_camera_xform(&camera); /* looks along -x: its left is z */
+    assert_vec(m.y, (vec3){0, 0, 1});
+    assert_vec(m.x, (vec3){0, 1, 0});
+}
+
 /* Where the aim leaves something open, the axes are still upright on one another and finite. */
 static void camera_without_a_way(void **state) {
     (void)state;
@@ -132,8 +155,8 @@ static void mesh_corners(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(groups_within_groups), cmocka_unit_test(camera_by_rotation),
-        cmocka_unit_test(camera_by_aim),        cmocka_unit_test(camera_without_a_way),
-        cmocka_unit_test(mesh_corners),
+        cmocka_unit_test(camera_by_aim),        cmocka_unit_test(camera_rolled),
+        cmocka_unit_test(camera_without_a_way), cmocka_unit_test(mesh_corners),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

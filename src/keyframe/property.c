@@ -18,6 +18,7 @@ const zt_property zt_properties[] = {
     {ZT_OWNER_CAMERA, "look_at", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(look_at), "the point in the middle of the picture"},
     {ZT_OWNER_CAMERA, "up", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(up), "what is up in the picture, with look_at"},
     {ZT_OWNER_CAMERA, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, CAMERA(rotation), "instead of look_at: turned from looking along -z"},
+    {ZT_OWNER_CAMERA, "roll", ZT_VALUE_ANGLE, "deg", -NONE, NONE, false, CAMERA(roll), "turns it around its view; the picture turns clockwise"},
     {ZT_OWNER_CAMERA, "fov", ZT_VALUE_ANGLE, "deg", 1e-6, 179.9, false, CAMERA(fov), "the angle that the picture's height spans"},
 
     {ZT_OWNER_MATERIAL, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, MATERIAL(color), "the share of light that is thrown back"},

@@ -20,12 +20,23 @@ static vec3 some_normal(vec3 v) {
     return vec3_normalize(vec3_cross(axis, v));
 }
 
-xform zt_camera_xform(const zt_camera *camera) {
-    if (!camera->aimed) return xform_place(camera->position, camera->rotation, (vec3){1, 1, 1});
+/* The axes of a camera that is aimed. */
+static xform aim(const zt_camera *camera) {
     vec3 back = vec3_normalize(vec3_sub(camera->position, camera->look_at));
     if (vec3_max_abs(back) == 0) back = (vec3){0, 0, 1}; /* looking at itself: straight on */
     vec3 right = vec3_cross(vec3_normalize(camera->up), back);
     /* Looking along its own up vector leaves the roll open. */
     right = vec3_max_abs(right) < 1e-12 ? some_normal(back) : vec3_normalize(right);
     return (xform){right, vec3_cross(back, right), back, camera->position};
+}
+
+xform zt_camera_xform(const zt_camera *camera) {
+    xform m = camera->aimed ? aim(camera)
+                            : xform_place(camera->position, camera->rotation, (vec3){1, 1, 1});
+    if (camera->roll == 0) return m;
+    double c = cos(camera->roll), s = sin(camera->roll);
+    vec3 right = vec3_add(vec3_scale(m.x, c), vec3_scale(m.y, s));
+    m.y = vec3_sub(vec3_scale(m.y, c), vec3_scale(m.x, s));
+    m.x = right;
+    return m;
 }

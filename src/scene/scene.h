@@ -77,12 +77,13 @@ typedef struct zt_light {
 } zt_light;
 
 /* Looks along its own -z with +y up; `aimed` ones turn towards look_at instead of by rotation.
- */
+ * Either way it is then rolled around its view, counterclockwise seen from behind. */
 typedef struct zt_camera {
     vec3 position, look_at, up;
     quat rotation;
     bool aimed;
     double fov; /* the vertical opening */
+    double roll;
 } zt_camera;
 
 typedef struct zt_scene {
