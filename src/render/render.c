@@ -64,17 +64,6 @@ static int list_pixels(struct render_thread *own, tile area) {
     return count;
 }
 
-static void make_rays(struct render_thread *own, const zt_render_job *job, int count,
-                      int sample) {
-    for (int i = 0; i < count; i++) {
-        float u, v;
-        zt_sample_pixel(&u, &v, own->column[i], own->row[i], sample, job->samples);
-        own->x[i] = (float)own->column[i] + u;
-        own->y[i] = (float)own->row[i] + v;
-    }
-    zt_lens_rays(&own->rays, &job->lens, own->x, own->y, count);
-}
-
 /* Adds a sample of each pixel to the sums; returns how many were not finite. */
 static int add_samples(struct render_thread *own, int count) {
     const zt_radiance *light = &own->light;
@@ -123,7 +112,8 @@ static void render_tile(void *user, int index, int worker) {
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
             return;
         }
-        make_rays(own, job, count, sample);
+        zt_sample_pixels(own->x, own->y, own->column, own->row, count, sample, job->samples);
+        zt_lens_rays(&own->rays, &job->lens, own->x, own->y, count);
         f->work->trace(&own->light, job->tracer, &own->rays, &own->classic);
         left_out += add_samples(own, count);
     }

@@ -7,15 +7,9 @@
 #include "scene/mesh.h"
 #include "tracer/primitives.h"
 
-/* A box along the axes; low > high where it is empty. */
-typedef struct zt_box {
-    real3 low, high;
-} zt_box;
-
-enum { ZT_HULL_LEVELS = 6 }; /* the finest level has 2^(levels - 1) boxes */
-
-/* Level l is boxes[2^l] … boxes[2^(l+1) - 1]; each level's boxes hold all triangles. In the
- * mesh's space, `origin` left out. */
+/* Box 1 holds all triangles; boxes 2 i and 2 i + 1 hold those of box i. In the mesh's space,
+ * `origin` left out. */
+enum { ZT_HULL_LEVELS = 6 };
 typedef struct zt_hull {
     zt_box boxes[1 << ZT_HULL_LEVELS];
 } zt_hull;

@@ -8,6 +8,72 @@
 
 #include "tracer/isa.h"
 
+/* The least and the greatest of a batch's origins and directions. */
+typedef struct bundle {
+    zt_box origins, directions;
+} bundle;
+
+static inline void range(real *restrict low, real *restrict high, const real *restrict values,
+                         int count) {
+    real l[ZT_BATCH_LANES], h[ZT_BATCH_LANES];
+    for (int j = 0; j < ZT_BATCH_LANES; j++) l[j] = h[j] = values[j < count ? j : 0];
+    int whole = count / ZT_BATCH_LANES * ZT_BATCH_LANES;
+    for (int i = 0; i < whole; i += ZT_BATCH_LANES)
+        for (int j = 0; j < ZT_BATCH_LANES; j++) {
+            l[j] = real_min(values[i + j], l[j]);
+            h[j] = real_max(values[i + j], h[j]);
+        }
+    for (int i = whole; i < count; i++) {
+        l[0] = real_min(values[i], l[0]);
+        h[0] = real_max(values[i], h[0]);
+    }
+    *low = l[0];
+    *high = h[0];
+    for (int j = 1; j < ZT_BATCH_LANES; j++) {
+        *low = real_min(*low, l[j]);
+        *high = real_max(*high, h[j]);
+    }
+}
+
+static bundle bundle_of(const zt_batch *r) {
+    bundle b;
+    range(&b.origins.low.x, &b.origins.high.x, r->ox, r->count);
+    range(&b.origins.low.y, &b.origins.high.y, r->oy, r->count);
+    range(&b.origins.low.z, &b.origins.high.z, r->oz, r->count);
+    range(&b.directions.low.x, &b.directions.high.x, r->dx, r->count);
+    range(&b.directions.low.y, &b.directions.high.y, r->dy, r->count);
+    range(&b.directions.low.z, &b.directions.high.z, r->dz, r->count);
+    return b;
+}
+
+/* Narrows the distances enter … leave to those at which some ray of a bundle may be between the
+ * two sides of a box across one axis, by interval arithmetic: `near` and `far` are how long the
+ * way there is at least and at most, `slow` and `fast` the share of it that a step goes. What
+ * is no number narrows nothing. */
+static void narrow(double *enter, double *leave, double near, double far, double slow,
+                   double fast) {
+    if (near > 0) *enter = fmax(*enter, fast <= 0 ? INFINITY : near / fast);
+    if (far < 0) *enter = fmax(*enter, slow >= 0 ? INFINITY : far / slow);
+    if (slow > 0) *leave = fmin(*leave, far / slow);
+    if (fast < 0) *leave = fmin(*leave, near / fast);
+}
+
+/* False only where no ray of a bundle meets a box, which is grown by more than the roundings of
+ * an intersection with what is within (Boulos, Wald and Shirley, "Geometric and arithmetic
+ * culling methods for entire ray packets", 2006). */
+static bool bundle_meets(const bundle *b, const zt_box *box) {
+    const zt_box *o = &b->origins, *d = &b->directions;
+    double room = (double)((zt_box_size(o) + zt_box_size(box)) * 32 * REAL_ROUNDING);
+    double enter = 0, leave = INFINITY;
+    narrow(&enter, &leave, (double)box->low.x - (double)o->high.x - room,
+           (double)box->high.x - (double)o->low.x + room, (double)d->low.x, (double)d->high.x);
+    narrow(&enter, &leave, (double)box->low.y - (double)o->high.y - room,
+           (double)box->high.y - (double)o->low.y + room, (double)d->low.y, (double)d->high.y);
+    narrow(&enter, &leave, (double)box->low.z - (double)o->high.z - room,
+           (double)box->high.z - (double)o->low.z + room, (double)d->low.z, (double)d->high.z);
+    return enter <= leave * (1 + 0x1p-40);
+}
+
 /* A loop for each kind of primitive. What is nearer by nothing leaves the earlier hit. */
 #define DEFINE_LOOPS(kind)                                                                     \
     static void kind##_intersect(zt_batch *restrict rays, const zt_primitive *p,               \
@@ -26,10 +92,12 @@ DEFINE_LOOPS(sphere)
 DEFINE_LOOPS(ellipsoid)
 DEFINE_LOOPS(triangle)
 
-static void intersect_analytic(zt_batch *rays, const zt_tracer *tracer) {
+static void intersect_analytic(zt_batch *rays, const bundle *b, const zt_tracer *tracer) {
     int count = zt_batch_padded(rays->count);
     for (int32_t index = 0; index < tracer->primitive_count; index++) {
         const zt_primitive *p = &tracer->primitives[index];
+        bool bounded = p->kind != ZT_PRIMITIVE_PLANE && p->kind != ZT_PRIMITIVE_MESH;
+        if (bounded && !bundle_meets(b, &p->box)) continue;
         switch (p->kind) {
         case ZT_PRIMITIVE_PLANE:
             plane_intersect(rays, p, index, count);
@@ -79,7 +147,6 @@ static void enter_hull(lanes *restrict l, const zt_batch *restrict rays, int fir
         l->t[j] = rays->t[first + j];
         real largest = real_max(real_max(fabsf(ox), fabsf(oy)), fabsf(oz));
         l->room[j] = 32 * REAL_ROUNDING * (reach * largest + size);
-        l->meets[j] = 0;
     }
 }
 
@@ -109,91 +176,37 @@ static inline bool any_meets(const lanes *l) {
     return any;
 }
 
-/* The least and the greatest of a batch's origins and directions. */
-typedef struct bundle {
-    real3 origin_low, origin_high, direction_low, direction_high;
-} bundle;
-
-static inline void range(real *restrict low, real *restrict high, const real *restrict values,
-                         int count) {
-    real l[ZT_BATCH_LANES], h[ZT_BATCH_LANES];
-    for (int j = 0; j < ZT_BATCH_LANES; j++) l[j] = h[j] = values[j < count ? j : 0];
-    int whole = count / ZT_BATCH_LANES * ZT_BATCH_LANES;
-    for (int i = 0; i < whole; i += ZT_BATCH_LANES)
-        for (int j = 0; j < ZT_BATCH_LANES; j++) {
-            l[j] = real_min(values[i + j], l[j]);
-            h[j] = real_max(values[i + j], h[j]);
-        }
-    for (int i = whole; i < count; i++) {
-        l[0] = real_min(values[i], l[0]);
-        h[0] = real_max(values[i], h[0]);
+/* Leaves in `meets` the rays that meet box number `index` of a hull, or rather those of its
+ * halves, `level` times halved. */
+static void meet_halves(lanes *restrict l, const zt_box *boxes, int index, int level) {
+    memset(l->meets, 0, sizeof l->meets);
+    meet_box(l, boxes[index]);
+    if (level == 0 || !any_meets(l)) return;
+    enum { STEP = 3 }; /* levels from one look to the next: halves of halves of halves */
+    int step = level < STEP ? level : STEP;
+    int32_t all[ZT_BATCH_LANES] = {0};
+    for (int i = index << step; i < (index + 1) << step; i++) {
+        meet_halves(l, boxes, i, level - step);
+        for (int j = 0; j < ZT_BATCH_LANES; j++) all[j] |= l->meets[j];
     }
-    *low = l[0];
-    *high = h[0];
-    for (int j = 1; j < ZT_BATCH_LANES; j++) {
-        *low = real_min(*low, l[j]);
-        *high = real_max(*high, h[j]);
-    }
-}
-
-static bundle bundle_of(const zt_batch *r) {
-    bundle b;
-    range(&b.origin_low.x, &b.origin_high.x, r->ox, r->count);
-    range(&b.origin_low.y, &b.origin_high.y, r->oy, r->count);
-    range(&b.origin_low.z, &b.origin_high.z, r->oz, r->count);
-    range(&b.direction_low.x, &b.direction_high.x, r->dx, r->count);
-    range(&b.direction_low.y, &b.direction_high.y, r->dy, r->count);
-    range(&b.direction_low.z, &b.direction_high.z, r->dz, r->count);
-    return b;
-}
-
-/* Narrows the distances enter … leave to those at which some ray of a bundle may be between the
- * two sides of a box across one axis, by interval arithmetic. What is no number narrows
- * nothing. */
-static void narrow(double *enter, double *leave, real box_low, real box_high, real origin_low,
-                   real origin_high, real direction_low, real direction_high) {
-    double near = (double)box_low - (double)origin_high; /* how far the way is, at least */
-    double far =
-        (double)box_high - (double)origin_low; /* and at most; either may be negative */
-    double slow = (double)direction_low, fast = (double)direction_high;
-    if (near > 0) *enter = fmax(*enter, fast <= 0 ? INFINITY : near / fast);
-    if (far < 0) *enter = fmax(*enter, slow >= 0 ? INFINITY : far / slow);
-    if (slow > 0) *leave = fmin(*leave, far / slow);
-    if (fast < 0) *leave = fmin(*leave, near / fast);
-}
-
-/* False only where no ray of a bundle meets a box (Boulos, Wald and Shirley, "Geometric and
- * arithmetic culling methods for entire ray packets", 2006). */
-static bool bundle_meets(const bundle *b, const zt_box *box) {
-    double enter = 0, leave = INFINITY;
-    narrow(&enter, &leave, box->low.x, box->high.x, b->origin_low.x, b->origin_high.x,
-           b->direction_low.x, b->direction_high.x);
-    narrow(&enter, &leave, box->low.y, box->high.y, b->origin_low.y, b->origin_high.y,
-           b->direction_low.y, b->direction_high.y);
-    narrow(&enter, &leave, box->low.z, box->high.z, b->origin_low.z, b->origin_high.z,
-           b->direction_low.z, b->direction_high.z);
-    return enter <= leave * (1 + 0x1p-40);
+    memcpy(l->meets, all, sizeof all);
 }
 
 /* Lists the rays that may meet a mesh before their t; `open_only` leaves out the ones that have
  * met something. */
 static int list_mesh_rays(int32_t *restrict list, const zt_batch *restrict rays,
-                          const zt_tracer *tracer, bool open_only) {
+                          const bundle *bundle, const zt_tracer *tracer, bool open_only) {
     const zt_placed_hull *all, *hulls[ZT_HULLS_MAX];
     int all_count = zt_meshes_hulls(&all, tracer->meshes), hull_count = 0, count = 0;
-    bundle b = bundle_of(rays);
     for (int h = 0; h < all_count; h++)
-        if (bundle_meets(&b, &all[h].around)) hulls[hull_count++] = &all[h];
+        if (bundle_meets(bundle, &all[h].around)) hulls[hull_count++] = &all[h];
     if (hull_count == 0) return 0;
     for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) {
         int32_t meets[ZT_BATCH_LANES] = {0};
         for (int h = 0; h < hull_count; h++) {
             lanes l;
             enter_hull(&l, rays, first, hulls[h]);
-            meet_box(&l, *hulls[h]->whole);
-            if (!any_meets(&l)) continue;
-            memset(l.meets, 0, sizeof l.meets);
-            for (int p = 0; p < hulls[h]->part_count; p++) meet_box(&l, hulls[h]->parts[p]);
+            meet_halves(&l, hulls[h]->boxes, 1, hulls[h]->level);
             for (int j = 0; j < ZT_BATCH_LANES; j++) meets[j] |= l.meets[j];
         }
         for (int j = 0; j < ZT_BATCH_LANES && first + j < rays->count; j++) {
@@ -209,17 +222,19 @@ void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer) {
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
     }
-    intersect_analytic(rays, tracer);
+    bundle b = bundle_of(rays);
+    intersect_analytic(rays, &b, tracer);
     if (!tracer->meshes) return;
     int32_t list[ZT_BATCH];
-    int count = list_mesh_rays(list, rays, tracer, false);
+    int count = list_mesh_rays(list, rays, &b, tracer, false);
     zt_meshes_intersect(tracer->meshes, rays, list, count);
 }
 
 void ZT_ISA_NAME(zt_occlude)(zt_batch *rays, const zt_tracer *tracer) {
-    intersect_analytic(rays, tracer);
+    bundle b = bundle_of(rays);
+    intersect_analytic(rays, &b, tracer);
     if (!tracer->meshes) return;
     int32_t list[ZT_BATCH];
-    int count = list_mesh_rays(list, rays, tracer, true);
+    int count = list_mesh_rays(list, rays, &b, tracer, true);
     zt_meshes_occlude(tracer->meshes, rays, list, count);
 }

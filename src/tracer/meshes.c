@@ -39,7 +39,7 @@ struct zt_meshes {
     int32_t primitive_capacity;
     /* One for each placed mesh; with more than ZT_HULLS_MAX the last one holds all the rest. */
     zt_placed_hull placed_hulls[ZT_HULLS_MAX];
-    zt_box rest;
+    zt_box rest_boxes[2];
 };
 
 static void tell_device_error(void *user, enum RTCError code, const char *text) {
@@ -191,22 +191,14 @@ zt_status zt_meshes_place(zt_meshes *m, int32_t mesh, int32_t primitive, const x
 
 static real3 row_of(double x, double y, double z) { return (real3){(real)x, (real)y, (real)z}; }
 
-/* The largest number in a box. */
-static double box_size(const zt_box *box) {
-    vec3 low = {(double)box->low.x, (double)box->low.y, (double)box->low.z};
-    vec3 high = {(double)box->high.x, (double)box->high.y, (double)box->high.z};
-    return fmax(vec3_max_abs(low), vec3_max_abs(high));
-}
-
 /* A box around a placed mesh: its bounds, turned into the space relative to the camera. */
 static zt_box box_around(const placed_mesh *placed) {
     const xform *m = &placed->place;
     vec3 half = vec3_scale(vec3_sub(placed->mesh->high, placed->mesh->low), 0.5);
     vec3 center = xform_point(m, vec3_add(placed->mesh->low, half));
-    double room = 0x1p-20 * placed->extent; /* far more than the roundings */
-    vec3 reach = {fabs(m->x.x) * half.x + fabs(m->y.x) * half.y + fabs(m->z.x) * half.z + room,
-                  fabs(m->x.y) * half.x + fabs(m->y.y) * half.y + fabs(m->z.y) * half.z + room,
-                  fabs(m->x.z) * half.x + fabs(m->y.z) * half.y + fabs(m->z.z) * half.z + room};
+    vec3 reach = {fabs(m->x.x) * half.x + fabs(m->y.x) * half.y + fabs(m->z.x) * half.z,
+                  fabs(m->x.y) * half.x + fabs(m->y.y) * half.y + fabs(m->z.y) * half.z,
+                  fabs(m->x.z) * half.x + fabs(m->y.z) * half.y + fabs(m->z.z) * half.z};
     vec3 low = vec3_sub(center, reach), high = vec3_add(center, reach);
     return (zt_box){row_of(low.x, low.y, low.z), row_of(high.x, high.y, high.z)};
 }
@@ -230,11 +222,10 @@ static zt_placed_hull place_hull(const zt_meshes *m, const placed_mesh *placed, 
                  row_of(back.x.z, back.y.z, back.z.z)},
         .at = row_of(back.shift.x, back.shift.y, back.shift.z),
         .reach = (real)reach,
-        .size = (real)(reach * vec3_max_abs(place.shift) + box_size(&hull->boxes[1])),
+        .size = (real)(reach * vec3_max_abs(place.shift) + zt_box_size(&hull->boxes[1])),
         .around = box_around(placed),
-        .whole = &hull->boxes[1],
-        .parts = &hull->boxes[1 << level],
-        .part_count = 1 << level};
+        .boxes = hull->boxes,
+        .level = level};
 }
 
 static void place_hulls(zt_meshes *m) {
@@ -245,16 +236,15 @@ static void place_hulls(zt_meshes *m) {
     for (int32_t i = 0; i < single_count; i++)
         m->placed_hulls[i] = place_hull(m, &m->placed[i], level);
     if (!crowd) return;
-    m->rest = box_around(&m->placed[single_count]);
+    zt_box rest = box_around(&m->placed[single_count]);
     for (int32_t i = single_count + 1; i < m->placed_count; i++)
-        m->rest = box_of_both(m->rest, box_around(&m->placed[i]));
+        rest = box_of_both(rest, box_around(&m->placed[i]));
+    m->rest_boxes[1] = rest;
     m->placed_hulls[single_count] = (zt_placed_hull){.rows = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                                      .reach = 1,
-                                                     .size = (real)box_size(&m->rest),
-                                                     .around = m->rest,
-                                                     .whole = &m->rest,
-                                                     .parts = &m->rest,
-                                                     .part_count = 1};
+                                                     .size = (real)zt_box_size(&rest),
+                                                     .around = rest,
+                                                     .boxes = m->rest_boxes};
 }
 
 zt_status zt_meshes_commit(zt_meshes *m) {

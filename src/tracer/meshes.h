@@ -41,9 +41,8 @@ typedef struct zt_placed_hull {
     real3 at;
     real reach, size;
     zt_box around;
-    const zt_box *whole;
-    const zt_box *parts;
-    int part_count;
+    const zt_box *boxes; /* as in zt_hull */
+    int level;           /* how many times to look at the halves: 0 for box 1 alone */
 } zt_placed_hull;
 
 enum { ZT_HULLS_MAX = 32 };

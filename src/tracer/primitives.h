@@ -21,12 +21,25 @@ typedef struct real3 {
     real x, y, z;
 } real3;
 
+/* A box along the axes; low > high where it is empty. */
+typedef struct zt_box {
+    real3 low, high;
+} zt_box;
+
+/* The largest number in a box. */
+static inline real zt_box_size(const zt_box *b) {
+    real low = real_max(real_max(fabsf(b->low.x), fabsf(b->low.y)), fabsf(b->low.z));
+    real high = real_max(real_max(fabsf(b->high.x), fabsf(b->high.y)), fabsf(b->high.z));
+    return real_max(low, high);
+}
+
 /* One thing to hit, in the space relative to the camera. Primitives stand in the order of their
  * objects; of equally near hits the first one counts. */
 typedef struct zt_primitive {
     zt_primitive_kind kind;
     int32_t object; /* its index in the scene */
     int32_t mesh;   /* of a mesh: the index in the scene, else -1 */
+    zt_box box;     /* around spheres, ellipsoids and triangles */
     union {
         struct {
             real3 normal; /* unit */

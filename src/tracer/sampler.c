@@ -31,14 +31,21 @@ static uint32_t sobol_second(uint32_t index) {
 
 static float unit_interval(uint32_t bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
-void zt_sample_pixel(float *u, float *v, int x, int y, int sample, int sample_count) {
-    if (sample_count == 1) {
-        *u = *v = 0.5f;
-        return;
-    }
-    uint64_t key = zt_random_key(zt_random_key(0, (uint64_t)x), (uint64_t)y);
+/* The place of a sample within its pixel, in [0, 1)^2. */
+static void sample_pixel(float *u, float *v, int32_t column, int32_t row, int sample) {
+    uint64_t key = zt_random_key(zt_random_key(0, (uint64_t)column), (uint64_t)row);
     uint64_t other = zt_random_key(key, 0);
     uint32_t index = scramble((uint32_t)sample, (uint32_t)key);
     *u = unit_interval(scramble(reverse_bits(index), (uint32_t)(key >> 32)));
     *v = unit_interval(scramble(sobol_second(index), (uint32_t)other));
+}
+
+void zt_sample_pixels(float *x, float *y, const int32_t *column, const int32_t *row, int count,
+                      int sample, int sample_count) {
+    for (int i = 0; i < count; i++) {
+        float u = 0.5f, v = 0.5f;
+        if (sample_count > 1) sample_pixel(&u, &v, column[i], row[i], sample);
+        x[i] = (float)column[i] + u;
+        y[i] = (float)row[i] + v;
+    }
 }

@@ -4,11 +4,12 @@
 
 #include <stdint.h>
 
-/* The place of sample number `sample` of `sample_count` in pixel (x, y), within [0, 1)^2. A
- * single sample is in the middle; several are the first two dimensions of Sobol's sequence with
- * Owen scrambling keyed by the pixel (Burley, "Practical hash-based Owen scrambling", JCGT
- * 9(4), 2020). The frame is no part of the key: what holds still looks the same from frame to
- * frame. */
-void zt_sample_pixel(float *u, float *v, int x, int y, int sample, int sample_count);
+/* The places (x, y), in pixels from the top left corner, of sample number `sample` of
+ * `sample_count` in each of `count` pixels. A single sample is in the middle; several are the
+ * first two dimensions of Sobol's sequence with Owen scrambling keyed by the pixel (Burley,
+ * "Practical hash-based Owen scrambling", JCGT 9(4), 2020). The frame is no part of the key:
+ * what holds still looks the same from frame to frame. */
+void zt_sample_pixels(float *x, float *y, const int32_t *column, const int32_t *row, int count,
+                      int sample, int sample_count);
 
 #endif

@@ -25,6 +25,10 @@ static double similarity_scale(const xform *m) {
     return similar ? sqrt(xx) : 0;
 }
 
+static zt_box box_around(vec3 center, vec3 reach) {
+    return (zt_box){to_real3(vec3_sub(center, reach)), to_real3(vec3_add(center, reach))};
+}
+
 /* Each of the following makes one primitive and its surface; false where there is nothing to
  * hit. `world` takes the object's numbers to the world relative to the camera. */
 
@@ -57,9 +61,12 @@ static bool prepare_ellipsoid(zt_primitive *primitive, zt_surface *surface,
     primitive->kind = ZT_PRIMITIVE_ELLIPSOID;
     for (int i = 0; i < 3; i++) primitive->ellipsoid.to_unit[i] = to_real3(rows[i]);
     primitive->ellipsoid.center = to_real3(center);
-    double longest =
-        fmax(vec3_length(world->x), fmax(vec3_length(world->y), vec3_length(world->z)));
-    surface->extent = (real)(vec3_max_abs(center) + longest * sphere->radius);
+    const xform *w = world; /* the sphere reaches as far along an axis as a row of it is long */
+    vec3 reach = {vec3_length((vec3){w->x.x, w->y.x, w->z.x}) * sphere->radius,
+                  vec3_length((vec3){w->x.y, w->y.y, w->z.y}) * sphere->radius,
+                  vec3_length((vec3){w->x.z, w->y.z, w->z.z}) * sphere->radius};
+    primitive->box = box_around(center, reach);
+    surface->extent = (real)(vec3_max_abs(center) + vec3_max_abs(reach));
     return true;
 }
 
@@ -73,6 +80,7 @@ static bool prepare_sphere(zt_primitive *primitive, zt_surface *surface,
     primitive->kind = ZT_PRIMITIVE_SPHERE;
     primitive->sphere.center = to_real3(center);
     primitive->sphere.radius = (real)radius;
+    primitive->box = box_around(center, (vec3){radius, radius, radius});
     surface->bend = (real)(1 / radius);
     surface->center = primitive->sphere.center;
     surface->level = primitive->sphere.radius;
@@ -94,6 +102,8 @@ static bool prepare_triangle(zt_primitive *primitive, zt_surface *surface,
         vec3_cross(vec3_normalize(vec3_sub(v[1], v[0])), vec3_normalize(vec3_sub(v[2], v[0]))));
     if (vec3_max_abs(normal) == 0) return false;
     primitive->kind = ZT_PRIMITIVE_TRIANGLE;
+    primitive->box = (zt_box){to_real3(vec3_min(v[0], vec3_min(v[1], v[2]))),
+                              to_real3(vec3_max(v[0], vec3_max(v[1], v[2])))};
     surface->normal = to_real3(normal);
     surface->center = primitive->triangle.vertices[0];
     surface->extent = (real)extent;
