@@ -1,0 +1,183 @@
+#include "keyframe/advice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "keyframe/curve_inside.h"
+
+/* ---- moments -------------------------------------------------------------------------------
+ */
+
+int64_t zt_advice_moment_count(const zt_film *film, int64_t most) {
+    int64_t count = (film->frame_count - 1) * ZT_ADVICE_MOMENTS_PER_FRAME + 1;
+    return count < most ? count : most < 1 ? 1 : most;
+}
+
+double zt_advice_moment_s(const zt_film *film, int64_t index, int64_t count) {
+    double last = (double)(film->frame_count - 1);
+    double frame = count > 1 ? last * (double)index / (double)(count - 1) : 0;
+    if (frame == rint(frame)) return zt_rate_time(film->rate, (int64_t)frame);
+    return frame * film->rate.den / film->rate.num;
+}
+
+/* The place of the key before a moment, or of the whole property. */
+static const zt_place *place_at(const zt_track *track, double time_s) {
+    if (!track->key_places) return track->place.line > 0 ? &track->place : NULL;
+    return &track->key_places[zt_curve_find(&track->curve, time_s).key];
+}
+
+/* ---- values that leave their range ---------------------------------------------------------
+ */
+
+/* How far the worst value that was met is outside of its range, and where that was. */
+typedef struct worst {
+    double beyond, value, bound, time_s;
+} worst;
+
+static void look_at(worst *w, const zt_track *track, double time_s) {
+    const zt_property *property = track->property;
+    double unit = zt_property_unit(property), value[ZT_VALUE_WIDTH_MAX];
+    zt_curve_eval(value, &track->curve, time_s);
+    for (int c = 0; c < zt_value_width(property->kind); c++) {
+        double written = value[c] / unit;
+        double bound = written < property->min ? property->min : property->max;
+        double beyond = written < property->min   ? property->min - written
+                        : written > property->max ? written - property->max
+                                                  : 0;
+        if (beyond > w->beyond) *w = (worst){beyond, written, bound, time_s};
+    }
+}
+
+/* Whether all values of a curve are between those of its keys. */
+static bool stays_between_keys(const zt_curve *curve) {
+    if (curve->spring || curve->space != ZT_SPACE_VALUES) return false;
+    if (curve->before == ZT_END_LINEAR || curve->before == ZT_END_LOOP_WITH_OFFSET ||
+        curve->after == ZT_END_LINEAR || curve->after == ZT_END_LOOP_WITH_OFFSET)
+        return false;
+    for (int32_t k = 0; k + 1 < curve->key_count; k++)
+        if (curve->kinds[k] > ZT_CURVE_SMOOTH || (curve->eases && curve->eases[k]))
+            return false;
+    return true;
+}
+
+/* Where a cubic with these control points turns round: up to two parameters within 0..1. */
+static int turning_points(double s[2], const double p[4]) {
+    double a = p[1] - p[0], b = p[2] - p[1], c = p[3] - p[2];
+    /* a t^2 + 2 b s t + c s^2 = 0 with t = 1 - s: (a - 2b + c) s^2 + 2 (b - a) s + a = 0 */
+    double square = a - 2 * b + c, half = b - a, root = half * half - square * a;
+    int count = 0;
+    if (!(root >= 0)) return 0;
+    double q = -(half + copysign(sqrt(root), half)); /* without cancellation */
+    double candidates[2] = {q / square, a / q};
+    for (int i = 0; i < 2; i++)
+        if (candidates[i] > 0 && candidates[i] < 1) s[count++] = candidates[i];
+    return count;
+}
+
+static double way_time(const zt_curve *curve, int32_t way, double s) {
+    if (curve->kinds[way] == ZT_CURVE_BEZIER) {
+        const double *x = curve->handle_times[way];
+        s = 3 * s * (1 - s) * (x[0] * (1 - s) + x[1] * s) + s * s * s;
+    }
+    return curve->times[way] + s * (curve->times[way + 1] - curve->times[way]);
+}
+
+/* Looks at the curve where a channel of a cubic way turns round, if the film shows it. */
+static void look_at_turning_points(worst *w, const zt_track *track, int32_t way,
+                                   double last_s) {
+    const zt_curve *curve = &track->curve;
+    int32_t width = curve->point_width;
+    const double *a = curve->points + (int64_t)way * width;
+    const double *controls = curve->controls + (int64_t)way * curve->control_width;
+    for (int32_t c = 0; c < width; c++) {
+        double s[2], points[4] = {a[c], controls[c], controls[width + c], a[width + c]};
+        int count = turning_points(s, points);
+        for (int i = 0; i < count; i++) {
+            double time_s = way_time(curve, way, s[i]);
+            if (time_s >= 0 && time_s <= last_s) look_at(w, track, time_s);
+        }
+    }
+}
+
+static void advise_range(const zt_animation *animation, const zt_track *track,
+                         zt_listener listener) {
+    const zt_property *property = track->property;
+    const zt_curve *curve = &track->curve;
+    const zt_film *film = &animation->film;
+    if ((isinf(property->min) && isinf(property->max)) || stays_between_keys(curve)) return;
+    worst w = {0};
+    int64_t count = zt_advice_moment_count(film, ZT_ADVICE_MOMENTS_MAX);
+    for (int64_t i = 0; i < count; i++) look_at(&w, track, zt_advice_moment_s(film, i, count));
+    double last_s = zt_rate_time(film->rate, film->frame_count - 1);
+    int32_t ways = curve->key_count - 1;
+    for (int32_t way = 0; way < ways && way < ZT_ADVICE_MOMENTS_MAX; way++)
+        if (!curve->spring && curve->kinds[way] > ZT_CURVE_LINEAR &&
+            !(curve->eases && curve->eases[way]) && !zt_curve_is_on_sphere(curve))
+            look_at_turning_points(&w, track, way, last_s);
+    if (w.beyond <= 1e-9 * fmax(1, fabs(w.bound))) return;
+    const char *unit = property->unit ? property->unit : "";
+    const char *gap = property->unit ? " " : "";
+    zt_tell_at(listener, ZT_WARNING, place_at(track, w.time_s),
+               "%s reaches %.4g%s%s at %s; it is kept at %g%s%s, the %s it can be", track->name,
+               w.value, gap, unit, zt_moment_in_words(film->rate, w.time_s).text, w.bound, gap,
+               unit, w.value < w.bound ? "least" : "most");
+}
+
+/* ---- movement between equal keys -----------------------------------------------------------
+ */
+
+/* The largest size of a number among the keys. */
+static double size_of(const zt_curve *curve) {
+    double size = 0;
+    for (int64_t i = 0; i < (int64_t)curve->key_count * curve->width; i++)
+        size = fmax(size, fabs(curve->values[i]));
+    return size;
+}
+
+/* How far, in any of its numbers, the curve goes away from two equal keys between them. */
+static double moves_between(const zt_curve *curve, int32_t way) {
+    enum { LOOKS = 16 };
+    const double *a = curve->values + (int64_t)way * curve->width, *b = a + curve->width;
+    double value[ZT_VALUE_WIDTH_MAX], most = 0;
+    if (memcmp(a, b, (size_t)curve->width * sizeof *a) != 0) return 0;
+    for (int i = 1; i < LOOKS; i++) {
+        double time_s = way_time(curve, way, (double)i / LOOKS);
+        zt_curve_eval(value, curve, time_s);
+        for (int32_t c = 0; c < curve->width; c++) most = fmax(most, fabs(value[c] - a[c]));
+    }
+    return most;
+}
+
+static void advise_equal_keys(const zt_animation *animation, const zt_track *track,
+                              zt_listener listener) {
+    const zt_curve *curve = &track->curve;
+    zt_rate rate = animation->film.rate;
+    double size = size_of(curve), unit = zt_property_unit(track->property);
+    int32_t ways = curve->key_count - 1, found = 0, first = 0;
+    double most = 0;
+    if (curve->spring) return; /* it is meant to swing on */
+    for (int32_t way = 0; way < ways && way < ZT_ADVICE_MOMENTS_MAX; way++) {
+        if (curve->kinds[way] <= ZT_CURVE_SMOOTH) continue;
+        double moved = moves_between(curve, way);
+        if (moved <= 1e-6 * size) continue;
+        if (found++ == 0) first = way, most = moved;
+    }
+    if (found == 0) return;
+    char further[48] = "";
+    if (found > 1) snprintf(further, sizeof further, "; so do %d further pairs", found - 1);
+    zt_moment_words begin = zt_moment_in_words(rate, curve->times[first]);
+    zt_moment_words end = zt_moment_in_words(rate, curve->times[first + 1]);
+    zt_tell_at(listener, ZT_WARNING, place_at(track, curve->times[first]),
+               "%s moves by up to %.3g between two equal keys, %s and %s%s; smooth or hold "
+               "would stay",
+               track->name, most / unit, begin.text, end.text, further);
+}
+
+zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener) {
+    for (int32_t i = 0; i < animation->track_count; i++) {
+        advise_range(animation, &animation->tracks[i], listener);
+        advise_equal_keys(animation, &animation->tracks[i], listener);
+    }
+    return zt_advice_camera(animation, listener);
+}

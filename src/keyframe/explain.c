@@ -1,0 +1,169 @@
+#include "keyframe/explain.h"
+
+#include <ctype.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "keyframe/rotation.h"
+#include "keyframe/velocity.h"
+
+static const char *const axes[] = {"x", "y", "z"};
+static const double degrees = 180 / 3.14159265358979323846;
+
+/* ---- times ---------------------------------------------------------------------------------
+ */
+
+/* "hh:mm:ss:ff" at a rate; false where it is none. */
+static bool read_timecode(double *time_s, zt_rate rate, const char *text) {
+    int hours, minutes, seconds, frames, end = 0;
+    if (strspn(text, "0123456789:") != strlen(text) || strlen(text) > 11) return false;
+    if (sscanf(text, "%d:%d:%d:%d%n", &hours, &minutes, &seconds, &frames, &end) != 4 ||
+        text[end] || minutes > 59 || seconds > 59)
+        return false;
+    int64_t per_s = (rate.num + rate.den - 1) / rate.den; /* frames are counted in whole ones */
+    if (frames >= per_s) return false;
+    *time_s =
+        zt_rate_time(rate, ((INT64_C(60) * hours + minutes) * 60 + seconds) * per_s + frames);
+    return true;
+}
+
+zt_status zt_subject_time(double *time_s, const zt_animation *animation, const char *text,
+                          zt_listener listener) {
+    static const struct {
+        const char *unit;
+        double factor;
+    } units[] = {{"s", 1}, {"ms", 1e-3}, {"%", 1e-2}, {"", 1}};
+    const zt_film *film = &animation->film;
+    double spf = (double)film->rate.den / film->rate.num, number;
+    if (read_timecode(time_s, film->rate, text)) return ZT_OK;
+    size_t length = strspn(text, "+-.0123456789");
+    const char *unit = text + length;
+    while (isblank((unsigned char)*unit)) unit++;
+    for (int i = 0; i < 4; i++) {
+        if (!zt_text_equal(unit, units[i].unit)) continue;
+        if (!zt_text_number(&number, text, text + length) || fabs(number) > 1e9) break;
+        *time_s = number * units[i].factor;
+        if (*unit == '%') *time_s *= zt_rate_time(film->rate, film->frame_count);
+        if (!*unit)
+            *time_s = number == rint(number) ? zt_rate_time(film->rate, (int64_t)number)
+                                             : number * spf;
+        return ZT_OK;
+    }
+    zt_tell(listener, ZT_ERROR,
+            "\"%s\" is no time: a frame's number, 1.5 s, 500 ms, 00:00:01:12 or 25 %%", text);
+    return ZT_EARGUMENT;
+}
+
+static double frame_at(zt_rate rate, double time_s) {
+    double frame = time_s * rate.num / rate.den, nearest = rint(frame);
+    return fabs(nearest) < 1e15 && zt_rate_time(rate, (int64_t)nearest) == time_s ? nearest
+                                                                                  : frame;
+}
+
+zt_moment_words zt_moment_in_words(zt_rate rate, double time_s) {
+    zt_moment_words words;
+    double frame = frame_at(rate, time_s);
+    if (frame == rint(frame))
+        snprintf(words.text, sizeof words.text, "frame %.0f", frame);
+    else
+        snprintf(words.text, sizeof words.text, "%.6g s (frame %.2f)", time_s, frame);
+    return words;
+}
+
+/* ---- velocity ------------------------------------------------------------------------------
+ */
+
+/* What changed from one time to another: numbers, or a turn around the axes in radians. */
+static zt_status change(double *way, const zt_subject *subject, double from_s, double to_s) {
+    const zt_track *track = &subject->film->tracks[subject->track];
+    double a[ZT_SUBJECT_CHANNELS_MAX], b[ZT_SUBJECT_CHANNELS_MAX];
+    ZT_TRY(zt_subject_eval(a, subject, from_s));
+    ZT_TRY(zt_subject_eval(b, subject, to_s));
+    if (track->property->kind == ZT_VALUE_ROTATION) {
+        quat qa = {a[0], a[1], a[2], a[3]}, qb = {b[0], b[1], b[2], b[3]};
+        if (quat_dot(qa, qb) < 0) qb = quat_scale(qb, -1);
+        vec3 turn = vec3_scale(zt_rotation_log(quat_mul(qb, quat_conjugate(qa))), 2);
+        memcpy(way, &turn, sizeof turn);
+    } else
+        for (int c = 0; c < subject->channel_count; c++) way[c] = b[c] - a[c];
+    return ZT_OK;
+}
+
+/* Whether a time is on the same way between two keys as another. */
+static bool same_way(const zt_curve *curve, double a_s, double b_s) {
+    zt_curve_spot a = zt_curve_find(curve, a_s), b = zt_curve_find(curve, b_s);
+    return a.key == b.key && a.round == b.round;
+}
+
+/* By a difference of second order: central, or to the one side that has no key in between. */
+static zt_status difference(zt_explanation *e, const zt_subject *subject) {
+    const zt_curve *curve = &subject->film->tracks[subject->track].curve;
+    int32_t key = zt_curve_find(curve, e->time_s).key, last = curve->key_count - 1;
+    if (key == last) key = last > 0 ? last - 1 : 0;
+    double way_s = last > 0 ? curve->times[key + 1] - curve->times[key] : 1;
+    double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
+    double one[ZT_SUBJECT_CHANNELS_MAX], two[ZT_SUBJECT_CHANNELS_MAX];
+    bool ahead = same_way(curve, t, t + 2 * h), behind = same_way(curve, t - h, t);
+    bool central = behind && ahead;
+    if (!ahead && behind) h = -h;
+    ZT_TRY(change(one, subject, central ? t - h : t, t + h));
+    if (!central) ZT_TRY(change(two, subject, t, t + 2 * h));
+    for (int c = 0; c < e->velocity_count; c++)
+        e->velocity[c] = (central ? one[c] : 4 * one[c] - two[c]) / (2 * h);
+    return ZT_OK;
+}
+
+static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject) {
+    const zt_track *track = &subject->film->tracks[subject->track];
+    bool turns = track->property->kind == ZT_VALUE_ROTATION;
+    e->velocity_channels = turns ? axes : subject->channels;
+    e->velocity_count = turns ? 3 : subject->channel_count;
+    double unit = turns || *subject->unit ? degrees : 1;
+    e->velocity_exact = zt_curve_velocity(e->velocity, &track->curve, e->time_s);
+    if (e->velocity_exact)
+        for (int c = 0; c < e->velocity_count; c++) e->velocity[c] *= unit;
+    else {
+        ZT_TRY(difference(e, subject));
+        for (int c = 0; turns && c < 3; c++) e->velocity[c] *= degrees;
+    }
+    return ZT_OK;
+}
+
+/* ---- all of it -----------------------------------------------------------------------------
+ */
+
+static void explain_keys(zt_explanation *e, const zt_curve *curve) {
+    zt_curve_spot spot = zt_curve_find(curve, e->time_s);
+    int32_t last = curve->key_count - 1;
+    double first_s = curve->times[0], last_s = curve->times[last];
+    bool before = e->time_s<first_s, after = e->time_s> last_s;
+    e->key_before = before && spot.round == 0 ? -1 : spot.key;
+    e->key_after = spot.key < last ? spot.key + 1 : -1;
+    if (before && spot.round == 0) e->key_after = 0;
+    e->u = spot.u;
+    e->s = spot.s;
+    e->round = spot.round;
+    if (before || after) e->end = zt_curve_end_name(before ? curve->before : curve->after);
+    e->beyond_s = before ? e->time_s - first_s : after ? e->time_s - last_s : 0;
+}
+
+zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subject,
+                             double time_s) {
+    const zt_animation *animation = subject->film;
+    *explanation = (zt_explanation){.time_s = time_s,
+                                    .frame = frame_at(animation->film.rate, time_s),
+                                    .key_before = -1,
+                                    .key_after = -1};
+    ZT_TRY(zt_subject_eval(explanation->value, subject, time_s));
+    for (int c = 0; c < subject->channel_count; c++)
+        explanation->cut |=
+            explanation->value[c] < subject->least || explanation->value[c] > subject->most;
+    ZT_TRY(explain_velocity(explanation, subject));
+    if (subject->key_count > 0)
+        explain_keys(explanation, &animation->tracks[subject->track].curve);
+    return ZT_OK;
+}

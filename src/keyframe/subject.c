@@ -1,0 +1,158 @@
+/* Properties as people ask for them: by name, with the units and names of their numbers. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "image/develop.h"
+#include "keyframe/explain.h"
+
+static const char *const no_names[] = {"", NULL};
+static const char *const xyz[] = {"x", "y", "z"};
+static const char *const rgb[] = {"r", "g", "b"};
+static const char *const wxyz[] = {"w", "x", "y", "z"};
+static const char *const corners[] = {"x1", "y1", "z1", "x2", "y2", "z2", "x3", "y3", "z3"};
+
+static const char *const *channel_names(zt_value_kind kind) {
+    switch (kind) {
+    case ZT_VALUE_COLOR:
+        return rgb;
+    case ZT_VALUE_ROTATION:
+        return wxyz;
+    case ZT_VALUE_VERTICES:
+        return corners;
+    case ZT_VALUE_VECTOR:
+    case ZT_VALUE_SCALE:
+        return xyz;
+    case ZT_VALUE_NUMBER:
+    case ZT_VALUE_ANGLE:
+    case ZT_VALUE_SWITCH:
+        break;
+    }
+    return no_names;
+}
+
+double zt_property_unit(const zt_property *property) {
+    return property->unit ? 3.14159265358979323846 / 180 : 1; /* "deg" is the only one */
+}
+
+static const zt_track *track_of(const zt_subject *subject) {
+    return &subject->film->tracks[subject->track];
+}
+
+static void to_written(double *value, const zt_subject *subject) {
+    double unit = *subject->unit ? zt_property_unit(track_of(subject)->property) : 1;
+    for (int c = 0; c < subject->channel_count; c++) value[c] /= unit;
+}
+
+zt_subject zt_subject_of_movement(const zt_animation *animation, int index) {
+    const zt_track *track = &animation->tracks[index];
+    const zt_property *property = track->property;
+    bool angle = property->kind == ZT_VALUE_ANGLE;
+    return (zt_subject){.name = track->name,
+                        .meaning = property->meaning,
+                        .driver = zt_curve_label(&track->curve),
+                        .unit = angle ? property->unit : "",
+                        .channels = channel_names(property->kind),
+                        .channel_count = zt_value_width(property->kind),
+                        .key_count = track->curve.key_count,
+                        .is_color = property->kind == ZT_VALUE_COLOR,
+                        .least = property->min,
+                        .most = property->max,
+                        .film = animation,
+                        .track = index};
+}
+
+zt_status zt_subject_find(zt_subject *subject, const zt_animation *animation, const char *name,
+                          zt_listener listener) {
+    zt_nearest nearest = zt_nearest_to(name);
+    for (int i = 0; i < animation->track_count; i++) {
+        const char *known = animation->tracks[i].name;
+        zt_nearest_try(&nearest, known);
+        if (!zt_text_equal(known, name)) continue;
+        *subject = zt_subject_of_movement(animation, i);
+        return ZT_OK;
+    }
+    if (nearest.best)
+        zt_tell(listener, ZT_ERROR, "nothing that moves is called %s; did you mean %s?", name,
+                nearest.best);
+    else
+        zt_tell(listener, ZT_ERROR,
+                "nothing that moves is called %s; zoetrope check lists what moves", name);
+    return ZT_EARGUMENT;
+}
+
+static zt_subject_place public_place(const zt_place *place) {
+    return (zt_subject_place){place->file, place->line, place->column};
+}
+
+zt_subject_place zt_subject_stands_at(const zt_subject *subject) {
+    return public_place(&track_of(subject)->place);
+}
+
+zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s) {
+    zt_curve_eval(value, &track_of(subject)->curve, time_s);
+    to_written(value, subject);
+    return ZT_OK;
+}
+
+/* ---- keys ----------------------------------------------------------------------------------
+ */
+
+static const char *ease_name(const zt_ease *ease) {
+    static const char *const names[] = {"cubic-bezier", "steps",   "linear()", "sine", "quad",
+                                        "cubic",        "quart",   "quint",    "expo", "circ",
+                                        "back",         "elastic", "bounce"};
+    return ease ? names[ease->kind] : NULL;
+}
+
+zt_subject_key zt_subject_key_at(const zt_subject *subject, int key) {
+    const zt_track *track = track_of(subject);
+    const zt_curve *curve = &track->curve;
+    zt_subject_key out = {.time_s = curve->times[key]};
+    memcpy(out.value, curve->values + (int64_t)key * curve->width,
+           (size_t)curve->width * sizeof *out.value);
+    to_written(out.value, subject);
+    if (key + 1 < curve->key_count) {
+        out.way = curve->spring ? "spring" : zt_curve_name((zt_curve_kind)curve->kinds[key]);
+        out.ease = curve->eases && !curve->spring ? ease_name(curve->eases[key]) : NULL;
+    }
+    if (track->key_places) out.place = public_place(&track->key_places[key]);
+    return out;
+}
+
+/* ---- words ---------------------------------------------------------------------------------
+ */
+
+/* The angles around the fixed axes x, then y, then z, in degrees. Where y is a right angle, x
+ * and z turn around the same axis, and all of it is z's. */
+static void angles_of(double angles[3], const double *wxyz_values) {
+    quat q = {wxyz_values[0], wxyz_values[1], wxyz_values[2], wxyz_values[3]};
+    xform m = xform_place((vec3){0, 0, 0}, q, (vec3){1, 1, 1});
+    double level = hypot(m.x.x, m.x.y);
+    angles[1] = atan2(-m.x.z, level);
+    angles[0] = level > 1e-9 ? atan2(m.y.z, m.z.z) : 0;
+    angles[2] = level > 1e-9 ? atan2(m.x.y, m.x.x) : atan2(-m.y.x, m.y.y);
+    for (int i = 0; i < 3; i++) {
+        angles[i] *= 180 / 3.14159265358979323846;
+        if (fabs(angles[i]) < 1e-9) angles[i] = 0; /* not -0, nor what rounding has left */
+    }
+}
+
+zt_subject_words zt_subject_in_words(const zt_subject *subject, const double *value) {
+    zt_subject_words words = {""};
+    zt_value_kind kind = track_of(subject)->property->kind;
+    if (kind == ZT_VALUE_COLOR) {
+        int bytes[3];
+        for (int c = 0; c < 3; c++)
+            bytes[c] = (int)lround(255 * zt_develop_value(value[c], ZT_VIEW_SRGB));
+        snprintf(words.text, sizeof words.text, "#%02x%02x%02x", bytes[0], bytes[1], bytes[2]);
+    } else if (kind == ZT_VALUE_ROTATION) {
+        double angles[3];
+        angles_of(angles, value);
+        snprintf(words.text, sizeof words.text, "[%.6g, %.6g, %.6g] deg", angles[0], angles[1],
+                 angles[2]);
+    } else if (kind == ZT_VALUE_SWITCH)
+        snprintf(words.text, sizeof words.text, "%s", *value >= 0.5 ? "true" : "false");
+    return words;
+}
