@@ -18,6 +18,19 @@ static inline zt_key key(double time_s, const double *value, zt_curve_kind kind)
     return (zt_key){.time_s = time_s, .value = value, .kind = kind};
 }
 
+/* A curve all of one kind through values that lie one after the other. */
+static inline zt_status curve_through(zt_curve *curve, zt_arena *arena, zt_curve_kind kind,
+                                      zt_value_kind value_kind, int count, const double *times,
+                                      const double *values) {
+    zt_key *keys = ZT_PUSH(arena, zt_key, (size_t)count);
+    assert_non_null(keys);
+    for (int k = 0; k < count; k++)
+        keys[k] = key(times[k], values + k * zt_value_width(value_kind), kind);
+    return zt_curve_from_keys(
+        curve, arena,
+        &(zt_curve_spec){.value_kind = value_kind, .key_count = count, .keys = keys});
+}
+
 static inline double eval1(const zt_curve *curve, double time_s) {
     double value[ZT_VALUE_WIDTH_MAX];
     zt_curve_eval(value, curve, time_s);

@@ -9,9 +9,8 @@
 
 #include <cmocka.h>
 
-#include "draw.h"
-#include "keyframe/curve.h"
 #include "keyframe/rotation.h"
+#include "keys.h"
 #include "real.h"
 
 static const double pi = 3.14159265358979323846;
@@ -172,16 +171,10 @@ static void velocities(void **state) {
 static zt_curve make(zt_arena *arena, zt_curve_kind kind, int count, const double *times,
                      const quat *keys) {
     zt_curve curve;
-    assert_int_equal(zt_curve_make(&curve, arena, kind, ZT_VALUE_ROTATION, count, times,
+    assert_int_equal(curve_through(&curve, arena, kind, ZT_VALUE_ROTATION, count, times,
                                    (const double *)keys),
                      ZT_OK);
     return curve;
-}
-
-static quat eval(const zt_curve *curve, double time_s) {
-    quat q;
-    zt_curve_eval((double *)&q, curve, time_s);
-    return q;
 }
 
 /* Between any two neighbours the way is the short one, whatever signs the keys were given with,
@@ -201,14 +194,14 @@ static void the_short_way(void **state) {
         }
         zt_curve curve = make(&arena, ZT_CURVE_LINEAR, COUNT, times, keys);
         for (int k = 0; k < COUNT; k++) {
-            quat q = eval(&curve, times[k]);
+            quat q = eval_quat(&curve, times[k]);
             bool same = memcmp(&q, &keys[k], sizeof q) == 0;
             q = quat_scale(q, -1);
             assert_true(same || memcmp(&q, &keys[k], sizeof q) == 0);
         }
         for (int k = 0; k + 1 < COUNT; k++) {
             double whole = turn(keys[k], keys[k + 1]);
-            quat middle = eval(&curve, (times[k] + times[k + 1]) / 2);
+            quat middle = eval_quat(&curve, (times[k] + times[k + 1]) / 2);
             assert_true(fabs(turn(keys[k], middle) - whole / 2) < 1e-12);
             assert_true(fabs(turn(middle, keys[k + 1]) - whole / 2) < 1e-12);
         }
@@ -236,7 +229,7 @@ static void half_turns(void **state) {
                 quat expected = quat_euler_xyz((vec3){axis == 0 ? direction * t * pi : 0,
                                                       axis == 1 ? direction * t * pi : 0,
                                                       axis == 2 ? direction * t * pi : 0});
-                assert_true(turn(eval(&curve, t), expected) < 1e-12);
+                assert_true(turn(eval_quat(&curve, t), expected) < 1e-12);
             }
         }
     zt_arena_free(&arena);
@@ -260,26 +253,19 @@ static void one_axis_is_a_smooth_angle(void **state) {
         }
         zt_curve numbers;
         assert_int_equal(
-            zt_curve_make(&numbers, &arena, ZT_CURVE_SMOOTH, ZT_VALUE_ANGLE, 8, times, angles),
+            curve_through(&numbers, &arena, ZT_CURVE_SMOOTH, ZT_VALUE_ANGLE, 8, times, angles),
             ZT_OK);
         zt_curve curve = make(&arena, ZT_CURVE_SMOOTH, 8, times, keys);
         for (int i = 0; i < 20; i++) {
             double t = draw_between(&d, times[0], times[7]);
             zt_curve_eval(&angle, &numbers, t);
             quat expected = quat_mul(first, quat_axis_angle(axis, angle));
-            worst = fmax(worst, turn(eval(&curve, t), expected));
+            worst = fmax(worst, turn(eval_quat(&curve, t), expected));
         }
     }
     printf("  smooth rotation around one axis: worst error %.2g\n", worst);
     assert_true(worst < 1e-13);
     zt_arena_free(&arena);
-}
-
-/* The angular velocity between two times, in the frame of the first. */
-static vec3 velocity(const zt_curve *curve, double from, double to) {
-    quat q = quat_mul(quat_conjugate(eval(curve, from)), eval(curve, to));
-    double scale = (q.w < 0 ? -2 : 2) / (to - from);
-    return vec3_scale((vec3){q.x, q.y, q.z}, scale);
 }
 
 /* Through keys turned in any way, at uneven times: unit length, no jump anywhere, no corner at
@@ -302,14 +288,14 @@ static void smooth_has_no_corner_and_no_flip(void **state) {
         zt_curve curve = make(&arena, ZT_CURVE_SMOOTH, 6, times, keys);
         const double h = 1e-6;
         for (int k = 1; k < 5; k++) {
-            vec3 before = velocity(&curve, times[k] - h, times[k]);
-            vec3 after = velocity(&curve, times[k], times[k] + h);
+            vec3 before = turning(&curve, times[k] - h, times[k]);
+            vec3 after = turning(&curve, times[k], times[k] + h);
             corner = fmax(corner, vec3_length(vec3_sub(after, before)));
         }
         for (int k = 0; k < 5; k++) {
-            quat last = eval(&curve, times[k]);
+            quat last = eval_quat(&curve, times[k]);
             for (int i = 1; i <= 100; i++) {
-                quat q = eval(&curve, times[k] + (times[k + 1] - times[k]) * i / 100);
+                quat q = eval_quat(&curve, times[k] + (times[k + 1] - times[k]) * i / 100);
                 step = fmax(step, turn(last, q));
                 length = fmax(length, length_error_ulp(q));
                 last = q;
@@ -343,7 +329,8 @@ static void odd_keys(void **state) {
             zt_curve curve = make(&arena, kind, 5, times, keys);
             for (int i = 0; i < 20; i++) {
                 int k = draw_below(&d, 4);
-                quat q = eval(&curve, times[k] + draw_unit(&d) * (times[k + 1] - times[k]));
+                quat q =
+                    eval_quat(&curve, times[k] + draw_unit(&d) * (times[k + 1] - times[k]));
                 if (!(length_error_ulp(q) <= 4))
                     fail_msg("kind %d (%.17g %.17g %.17g %.17g) is no rotation", kind, q.w, q.x,
                              q.y, q.z);
