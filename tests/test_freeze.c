@@ -13,6 +13,8 @@
 
 static const double pi = 3.14159265358979323846;
 
+static const zt_listener deaf;
+
 enum { OBJECTS = 10, LIGHTS = 4, MATERIALS = 3 };
 
 /* One thing of each owner, and a second one that must stay as it is. */
@@ -125,8 +127,8 @@ static void one_property_moves(void **state) {
         add_track(animation, p->owner, p->name, index, 1, 0.25);
         zt_arena frame = {0};
         zt_scene before, scene;
-        assert_int_equal(zt_animation_freeze(&before, animation, 0, &frame), ZT_OK);
-        assert_int_equal(zt_animation_freeze(&scene, animation, 3, &frame), ZT_OK);
+        assert_int_equal(zt_animation_freeze(&before, animation, 0, &frame, deaf), ZT_OK);
+        assert_int_equal(zt_animation_freeze(&scene, animation, 3, &frame, deaf), ZT_OK);
         const zt_scene *rest = &animation->rest;
         assert_ptr_not_equal(scene.objects, rest->objects);
         assert_ptr_not_equal(scene.materials, rest->materials);
@@ -165,7 +167,7 @@ static void many_properties_move(void **state) {
     zt_scene scene;
     for (int round = 0; round < 3; round++) {
         zt_arena_reset(&frame);
-        assert_int_equal(zt_animation_freeze(&scene, animation, 1.5, &frame), ZT_OK);
+        assert_int_equal(zt_animation_freeze(&scene, animation, 1.5, &frame, deaf), ZT_OK);
         assert_reads(&scene, ZT_OWNER_SPHERE, "center", 1, 2);
         assert_reads(&scene, ZT_OWNER_SPHERE, "radius", 1, 0);
         assert_reads(&scene, ZT_OWNER_SPHERE, "center", 6, 0);
@@ -214,7 +216,7 @@ static void out_of_range(void **state) {
         for (double t = -40; t <= 40; t += 8) {
             zt_scene scene;
             zt_arena_reset(&frame);
-            assert_int_equal(zt_animation_freeze(&scene, animation, t, &frame), ZT_OK);
+            assert_int_equal(zt_animation_freeze(&scene, animation, t, &frame, deaf), ZT_OK);
             assert_reads(&scene, cases[i].owner, cases[i].name, cases[i].index,
                          fmin(fmax(0.25 + 0.25 * t, cases[i].low), cases[i].high));
         }
@@ -229,7 +231,7 @@ static void nothing(void **state) {
     zt_animation animation = {.film = {.frame_count = 1}};
     zt_arena frame = {0};
     zt_scene scene;
-    assert_int_equal(zt_animation_freeze(&scene, &animation, 0, &frame), ZT_OK);
+    assert_int_equal(zt_animation_freeze(&scene, &animation, 0, &frame, deaf), ZT_OK);
     assert_int_equal(scene.object_count, 0);
     zt_arena_free(&frame);
 }
@@ -258,10 +260,10 @@ static void summary(void **state) {
     assert_int_equal(zt_animation_film(animation)->frame_count, 96);
     zt_movement center = zt_animation_movement(animation, 0);
     assert_string_equal(center.name, "center");
-    assert_string_equal(center.curve, "linear");
+    assert_string_equal(center.driver, "linear");
     assert_int_equal(center.key_count, 2);
     assert_true(center.first_s == 1 && center.last_s == 3);
-    assert_string_equal(zt_animation_movement(animation, 1).curve, "hold");
+    assert_string_equal(zt_animation_movement(animation, 1).driver, "hold");
     zt_animation_free(&animation);
     assert_null(animation);
     zt_animation_free(&animation);

@@ -161,7 +161,7 @@ static void key_times(void **state) {
     }
     zt_movement movement = zt_animation_movement(animation, 0);
     assert_string_equal(movement.name, "camera.fov");
-    assert_string_equal(movement.curve, "linear");
+    assert_string_equal(movement.driver, "linear");
     zt_animation_free(&animation);
 }
 

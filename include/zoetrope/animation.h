@@ -32,7 +32,7 @@ typedef struct zt_contents {
     int64_t mesh_triangle_count; /* over all mesh objects, each use counted */
     int ambient_light_count, point_light_count;
     int material_count;
-    int track_count; /* properties that are keyed */
+    int track_count; /* properties that move */
 } zt_contents;
 
 /* Reads the description at `path` with all that it refers to. All mistakes are told before
@@ -46,10 +46,12 @@ zt_contents zt_animation_contents(const zt_animation *animation);
 
 /* One thing that moves, in words. */
 typedef struct zt_movement {
-    const char *name;  /* "ball.center", "camera.fov"; owned by the animation */
-    const char *curve; /* "smooth" */
-    int key_count;
-    double first_s, last_s; /* times of its first and last key, seconds */
+    const char *name;   /* "ball.center", "camera.fov"; owned by the animation */
+    const char *driver; /* of keys "smooth" or what else their curve is; or else "expression",
+                           "follow", "orbit", "offset", "look_at" */
+    int key_count;          /* 0 where it has no keys */
+    double first_s, last_s; /* seconds: of the first and last key, or of the begin and end of
+                               what is followed; else 0 */
 } zt_movement;
 
 /* `index` from 0 to track_count - 1, in the order of the description. */

@@ -146,8 +146,11 @@ static void print_movements(const zt_animation *animation, int count) {
         zt_movement m = zt_animation_movement(animation, i);
         fputs(i == 0 ? "moves      " : "           ", stdout);
         print_name(m.name, width);
-        printf("  %s, %d key%s, %.6g s to %.6g s\n", m.curve, m.key_count,
-               m.key_count == 1 ? "" : "s", m.first_s, m.last_s);
+        printf("  %s", m.driver);
+        if (m.key_count > 0) printf(", %d key%s", m.key_count, m.key_count == 1 ? "" : "s");
+        if (m.key_count > 0 || m.last_s > m.first_s)
+            printf(", %.6g s to %.6g s", m.first_s, m.last_s);
+        putchar('\n');
     }
     if (count == 0) puts("moves      nothing");
 }

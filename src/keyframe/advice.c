@@ -176,6 +176,7 @@ static void advise_equal_keys(const zt_animation *animation, const zt_track *tra
 
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener) {
     for (int32_t i = 0; i < animation->track_count; i++) {
+        if (animation->tracks[i].kind != ZT_TRACK_CURVE) continue;
         advise_range(animation, &animation->tracks[i], listener);
         advise_equal_keys(animation, &animation->tracks[i], listener);
     }

@@ -83,7 +83,8 @@ static void tell(const findings *f, const zt_animation *animation, zt_listener l
     }
 }
 
-static zt_status look(findings *f, const zt_animation *animation, zt_arena *arena) {
+static zt_status look(findings *f, const zt_animation *animation, zt_arena *arena,
+                      zt_listener listener) {
     const zt_film *film = &animation->film;
     int64_t objects = animation->rest.object_count, tracks = animation->track_count;
     int64_t most = ZT_ADVICE_WORK_MAX / (objects + tracks + 1);
@@ -93,7 +94,7 @@ static zt_status look(findings *f, const zt_animation *animation, zt_arena *aren
         double time_s = zt_advice_moment_s(film, i, count);
         zt_scene scene;
         zt_arena_reset(arena);
-        ZT_TRY(zt_animation_freeze(&scene, animation, time_s, arena));
+        ZT_TRY(zt_animation_freeze(&scene, animation, time_s, arena, listener));
         xform *worlds = ZT_PUSH(arena, xform, (size_t)objects);
         if (!worlds) return ZT_EMEMORY;
         look_along(f, &scene.camera, time_s);
@@ -112,7 +113,7 @@ zt_status zt_advice_camera(const zt_animation *animation, zt_listener listener) 
     zt_status status = f.inside_s && f.outside_s ? ZT_OK : ZT_EMEMORY;
     if (status == ZT_OK) {
         for (size_t i = 0; i < count; i++) f.inside_s[i] = NAN;
-        status = look(&f, animation, &frame);
+        status = look(&f, animation, &frame, listener);
     }
     if (status == ZT_OK) tell(&f, animation, listener);
     zt_arena_free(&frame);

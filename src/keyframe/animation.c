@@ -1,5 +1,6 @@
 #include "keyframe/animation.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +12,64 @@ static void *copy(zt_arena *arena, const void *array, size_t element_size, int32
     return own;
 }
 
-/* Between its keys a curve may overshoot, but no radius becomes negative. */
+/* Between its keys a curve may overshoot, but no radius becomes negative; nor is anything
+ * larger than the largest double. */
 static void keep_in_range(double *value, const zt_property *property) {
     const double unit =
         property->unit ? 3.14159265358979323846 / 180 : 1; /* "deg" is the only one */
+    const double min = fmax(property->min * unit, -DBL_MAX),
+                 max = fmin(property->max * unit, DBL_MAX);
     for (int c = 0; c < zt_value_width(property->kind); c++)
-        value[c] = fmin(fmax(value[c], property->min * unit), property->max * unit);
+        value[c] = fmin(fmax(value[c], min), max);
+}
+
+static zt_status eval_formula(double *value, const zt_track *track, const zt_scene *scene,
+                              const zt_animation *animation, double time_s,
+                              zt_listener listener) {
+    zt_expression_mistake mistake;
+    zt_status status =
+        zt_formula_eval(value, &track->formula, &animation->formulas, track->property->kind,
+                        scene, animation->film.rate, time_s, &mistake);
+    if (status != ZT_EDESCRIPTION) return status;
+    zt_place place = zt_formula_place(&track->formula, &mistake);
+    zt_tell_at(listener, ZT_ERROR, &place, "\"%s\" has no value at %.6g s: %s", track->name,
+               time_s, mistake.text);
+    return status;
+}
+
+/* The value of a track, from what the scene holds by now; `has_value` is false where it stays
+ * as it is. */
+static zt_status eval_track(double *value, bool *has_value, const zt_track *track,
+                            const zt_scene *scene, const zt_animation *animation, double time_s,
+                            zt_listener listener) {
+    const zt_reference driven = {track->property, track->index};
+    *has_value = true;
+    switch (track->kind) {
+    case ZT_TRACK_CURVE:
+        zt_curve_eval(value, &track->curve, time_s);
+        break;
+    case ZT_TRACK_FORMULA:
+        return eval_formula(value, track, scene, animation, time_s, listener);
+    case ZT_TRACK_FOLLOW:
+        zt_follow_eval(value, &track->follow, driven, time_s);
+        break;
+    case ZT_TRACK_ORBIT:
+        *has_value = zt_orbit_eval(value, &track->orbit, driven, scene, time_s);
+        break;
+    case ZT_TRACK_OFFSET:
+        zt_offset_eval(value, &track->offset, scene);
+        break;
+    case ZT_TRACK_LOOK_AT:
+        *has_value = zt_look_at_eval(value, &track->look_at, driven, scene);
+        break;
+    case ZT_TRACK_KIND_COUNT:
+        break;
+    }
+    return ZT_OK;
 }
 
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
-                              zt_arena *arena) {
+                              zt_arena *arena, zt_listener listener) {
     const zt_scene *rest = &animation->rest;
     *scene = *rest;
     scene->materials =
@@ -29,9 +78,11 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
     scene->objects = copy(arena, rest->objects, sizeof *rest->objects, rest->object_count);
     if (!scene->materials || !scene->lights || !scene->objects) return ZT_EMEMORY;
     for (int32_t i = 0; i < animation->track_count; i++) {
-        const zt_track *track = &animation->tracks[i];
+        const zt_track *track = &animation->tracks[animation->order ? animation->order[i] : i];
         double value[ZT_VALUE_WIDTH_MAX];
-        zt_curve_eval(value, &track->curve, time_s);
+        bool has_value;
+        ZT_TRY(eval_track(value, &has_value, track, scene, animation, time_s, listener));
+        if (!has_value) continue;
         keep_in_range(value, track->property);
         zt_property_set(track->property, scene, track->index, value);
     }
@@ -40,6 +91,8 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
 
 void zt_animation_free(zt_animation **animation) {
     if (!*animation) return;
+    zt_formulas *formulas = &(*animation)->formulas;
+    if (formulas->door) formulas->door->close(&formulas->expressions);
     zt_arena_free(&(*animation)->arena);
     free(*animation);
     *animation = NULL;
@@ -81,11 +134,21 @@ zt_contents zt_animation_contents(const zt_animation *animation) {
 }
 
 zt_movement zt_animation_movement(const zt_animation *animation, int index) {
+    static const char *const kinds[ZT_TRACK_KIND_COUNT] = {[ZT_TRACK_FORMULA] = "expression",
+                                                           [ZT_TRACK_FOLLOW] = "follow",
+                                                           [ZT_TRACK_ORBIT] = "orbit",
+                                                           [ZT_TRACK_OFFSET] = "offset",
+                                                           [ZT_TRACK_LOOK_AT] = "look_at"};
     const zt_track *track = &animation->tracks[index];
-    const zt_curve *curve = &track->curve;
-    return (zt_movement){.name = track->name,
-                         .curve = zt_curve_label(curve),
-                         .key_count = curve->key_count,
-                         .first_s = curve->times[0],
-                         .last_s = curve->times[curve->key_count - 1]};
+    zt_movement movement = {.name = track->name, .driver = kinds[track->kind]};
+    if (track->kind == ZT_TRACK_CURVE) {
+        movement.driver = zt_curve_label(&track->curve);
+        movement.key_count = track->curve.key_count;
+        movement.first_s = track->curve.times[0];
+        movement.last_s = track->curve.times[track->curve.key_count - 1];
+    } else if (track->kind == ZT_TRACK_FOLLOW) {
+        movement.first_s = track->follow.from_s;
+        movement.last_s = track->follow.to_s;
+    }
+    return movement;
 }

@@ -6,33 +6,59 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
+#include "keyframe/constraint.h"
 #include "keyframe/curve.h"
+#include "keyframe/formula.h"
 #include "keyframe/property.h"
 #include "scene/scene.h"
 
-/* A curve and the property that it drives. */
+/* What drives a property. */
+typedef enum zt_track_kind {
+    ZT_TRACK_CURVE, /* keys */
+    ZT_TRACK_FORMULA,
+    ZT_TRACK_FOLLOW,
+    ZT_TRACK_ORBIT,
+    ZT_TRACK_OFFSET,
+    ZT_TRACK_LOOK_AT,
+    ZT_TRACK_KIND_COUNT
+} zt_track_kind;
+
+/* A property, and what drives it. */
 typedef struct zt_track {
     const zt_property *property;
     int32_t index;    /* which of the owner's things, as zt_property_set takes it */
     const char *name; /* "ball.center" */
-    zt_curve curve;
+    zt_track_kind kind;
+    union {
+        zt_curve curve;
+        zt_formula formula;
+        zt_follow follow;
+        zt_orbit orbit;
+        zt_offset offset;
+        zt_look_at look_at;
+    };
     zt_place place;             /* of the property in the description */
     const zt_place *key_places; /* one per key of the curve; NULL where none is known */
 } zt_track;
 
 /* The struct itself is the reader's calloc; zt_animation_free gives it back. */
 struct zt_animation {
-    zt_arena arena; /* owns all below */
+    zt_arena arena; /* owns all below but the formulas */
     zt_film film;
     zt_scene rest; /* all that does not move has its value here */
     const zt_track *tracks;
     int32_t track_count;
+    const int32_t *order; /* of evaluation: indices of tracks, each after those that it needs;
+                             NULL for the tracks' own order */
+    zt_formulas formulas;
 };
 
 /* The scene of the moment `time_s`, in the arena: a copy of the scene at rest with each track's
- * value written into it. Meshes are shared with the animation. ZT_EMEMORY is all that can fail.
- */
+ * value written into it, brought into its property's range. Meshes are shared with the
+ * animation. The same bits for the same time, from any number of threads at once.
+ * ZT_EDESCRIPTION: a formula has no value at this time, which is told with its place;
+ * ZT_EMEMORY. */
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
-                              zt_arena *arena);
+                              zt_arena *arena, zt_listener listener);
 
 #endif

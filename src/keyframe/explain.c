@@ -99,15 +99,21 @@ static bool same_way(const zt_curve *curve, double a_s, double b_s) {
     return a.key == b.key && a.round == b.round;
 }
 
+static double way_duration_s(const zt_curve *curve, double time_s) {
+    int32_t key = zt_curve_find(curve, time_s).key, last = curve->key_count - 1;
+    if (key == last) key = last > 0 ? last - 1 : 0;
+    return last > 0 ? curve->times[key + 1] - curve->times[key] : 1;
+}
+
 /* By a difference of second order: central, or to the one side that has no key in between. */
 static zt_status difference(zt_explanation *e, const zt_subject *subject) {
-    const zt_curve *curve = &subject->film->tracks[subject->track].curve;
-    int32_t key = zt_curve_find(curve, e->time_s).key, last = curve->key_count - 1;
-    if (key == last) key = last > 0 ? last - 1 : 0;
-    double way_s = last > 0 ? curve->times[key + 1] - curve->times[key] : 1;
+    const zt_track *track = &subject->film->tracks[subject->track];
+    const zt_curve *curve = track->kind == ZT_TRACK_CURVE ? &track->curve : NULL;
+    double way_s = curve ? way_duration_s(curve, e->time_s) : 1;
     double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
     double one[ZT_SUBJECT_CHANNELS_MAX], two[ZT_SUBJECT_CHANNELS_MAX];
-    bool ahead = same_way(curve, t, t + 2 * h), behind = same_way(curve, t - h, t);
+    bool ahead = !curve || same_way(curve, t, t + 2 * h);
+    bool behind = !curve || same_way(curve, t - h, t);
     bool central = behind && ahead;
     if (!ahead && behind) h = -h;
     ZT_TRY(change(one, subject, central ? t - h : t, t + h));
@@ -123,7 +129,8 @@ static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject) 
     e->velocity_channels = turns ? axes : subject->channels;
     e->velocity_count = turns ? 3 : subject->channel_count;
     double unit = turns || *subject->unit ? degrees : 1;
-    e->velocity_exact = zt_curve_velocity(e->velocity, &track->curve, e->time_s);
+    e->velocity_exact = track->kind == ZT_TRACK_CURVE &&
+                        zt_curve_velocity(e->velocity, &track->curve, e->time_s);
     if (e->velocity_exact)
         for (int c = 0; c < e->velocity_count; c++) e->velocity[c] *= unit;
     else {

@@ -48,14 +48,15 @@ static void to_written(double *value, const zt_subject *subject) {
 zt_subject zt_subject_of_movement(const zt_animation *animation, int index) {
     const zt_track *track = &animation->tracks[index];
     const zt_property *property = track->property;
+    zt_movement movement = zt_animation_movement(animation, index);
     bool angle = property->kind == ZT_VALUE_ANGLE;
     return (zt_subject){.name = track->name,
                         .meaning = property->meaning,
-                        .driver = zt_curve_label(&track->curve),
+                        .driver = movement.driver,
                         .unit = angle ? property->unit : "",
                         .channels = channel_names(property->kind),
                         .channel_count = zt_value_width(property->kind),
-                        .key_count = track->curve.key_count,
+                        .key_count = movement.key_count,
                         .is_color = property->kind == ZT_VALUE_COLOR,
                         .least = property->min,
                         .most = property->max,
@@ -90,8 +91,24 @@ zt_subject_place zt_subject_stands_at(const zt_subject *subject) {
     return public_place(&track_of(subject)->place);
 }
 
+/* What depends on other things is worked out with all of them. */
+static zt_status eval_in_scene(double *value, const zt_subject *subject, double time_s) {
+    const zt_track *track = track_of(subject);
+    zt_arena arena = {0};
+    zt_scene scene;
+    zt_status status =
+        zt_animation_freeze(&scene, subject->film, time_s, &arena, (zt_listener){NULL, NULL});
+    if (status == ZT_OK) zt_property_get(value, track->property, &scene, track->index);
+    zt_arena_free(&arena);
+    return status;
+}
+
 zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s) {
-    zt_curve_eval(value, &track_of(subject)->curve, time_s);
+    const zt_track *track = track_of(subject);
+    if (track->kind == ZT_TRACK_CURVE)
+        zt_curve_eval(value, &track->curve, time_s);
+    else
+        ZT_TRY(eval_in_scene(value, subject, time_s));
     to_written(value, subject);
     return ZT_OK;
 }

@@ -67,7 +67,7 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
     zt_tracer tracer;
     int64_t left_out_count;
     ZT_TRY(zt_animation_freeze(&scene, r->animation, zt_rate_time(r->format.rate, frame),
-                               &r->frame));
+                               &r->frame, r->listener));
     ZT_TRY(zt_tracer_prepare(&tracer, &scene, r->meshes, &r->frame));
     zt_render_job job = {.tracer = &tracer,
                          .lens = zt_lens_prepare(&scene.camera, image->width, image->height),
