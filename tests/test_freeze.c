@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "keyframe/animation.h"
+#include "keys.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -63,7 +64,7 @@ static void add_track(zt_animation *animation, zt_owner owner, const char *name,
     zt_track *track = &tracks[animation->track_count++];
     *track = (zt_track){.property = property, .index = index, .name = name};
     assert_int_equal(
-        zt_curve_make(&track->curve, arena, ZT_CURVE_LINEAR, property->kind, 2, times, values),
+        curve_through(&track->curve, arena, ZT_CURVE_LINEAR, property->kind, 2, times, values),
         ZT_OK);
     animation->tracks = tracks;
 }
