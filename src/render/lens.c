@@ -1,5 +1,7 @@
 #include "render/lens.h"
 
+#include "tracer/isa.h"
+
 zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height) {
     xform axes = zt_camera_xform(camera);
     double step = 2 * tan(camera->fov / 2) / height; /* of a pixel, at distance 1 */
@@ -8,8 +10,8 @@ zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height) {
     return (zt_lens){vec3_scale(vec3_add(axes.z, half), -1), right, down};
 }
 
-void zt_lens_rays(zt_batch *restrict rays, const zt_lens *lens, const float *restrict x,
-                  const float *restrict y, int count) {
+ZT_CLONES void zt_lens_rays(zt_batch *restrict rays, const zt_lens *lens,
+                            const float *restrict x, const float *restrict y, int count) {
     const zt_lens l = *lens;
     for (int i = 0; i < count; i++) {
         double dx = l.corner.x + (double)x[i] * l.right.x + (double)y[i] * l.down.x;

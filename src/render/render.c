@@ -12,6 +12,7 @@ static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
 
 struct zt_render_work {
     zt_classic_trace *trace;
+    int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each ray's pixel within a tile */
     struct render_thread {
         int32_t column[ZT_BATCH], row[ZT_BATCH]; /* the pixel of each ray */
         float x[ZT_BATCH], y[ZT_BATCH];          /* its place in the picture, pixels */
@@ -39,27 +40,42 @@ typedef struct tile {
 
 static int min_int(int a, int b) { return a < b ? a : b; }
 
+/* The pixels of a tile in blocks of 4 x 4, so that rays that travel in one packet are close
+ * together in both directions. */
+static void order_pixels(zt_render_work *work) {
+    enum { BLOCK = 4, ACROSS = TILE_SIDE / BLOCK };
+    for (int i = 0; i < ZT_BATCH; i++) {
+        int block = i / (BLOCK * BLOCK), within = i % (BLOCK * BLOCK);
+        work->column[i] = block % ACROSS * BLOCK + within % BLOCK;
+        work->row[i] = block / ACROSS * BLOCK + within / BLOCK;
+    }
+}
+
 zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_count) {
     zt_render_work *work = ZT_PUSH(arena, zt_render_work, 1);
     if (!work) return ZT_EMEMORY;
     work->trace = zt_classic_select();
+    order_pixels(work);
     work->threads = ZT_PUSH(arena, struct render_thread, (size_t)thread_count);
     *out = work;
     return work->threads ? ZT_OK : ZT_EMEMORY;
 }
 
-/* Numbers the pixels of a tile in blocks of 4 x 4, so that rays that travel in one packet are
- * close together in both directions; those beyond the edge of the picture are left out. */
-static int list_pixels(struct render_thread *own, tile area) {
-    enum { BLOCK = 4, ACROSS = TILE_SIDE / BLOCK };
+/* Lists the pixels of a tile; those beyond the edge of the picture are left out. */
+static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area) {
+    int32_t *restrict column = own->column, *restrict row = own->row;
+    if (area.width == TILE_SIDE && area.height == TILE_SIDE) {
+        for (int i = 0; i < ZT_BATCH; i++) {
+            column[i] = area.x + work->column[i];
+            row[i] = area.y + work->row[i];
+        }
+        return ZT_BATCH;
+    }
     int count = 0;
     for (int i = 0; i < ZT_BATCH; i++) {
-        int block = i / (BLOCK * BLOCK), within = i % (BLOCK * BLOCK);
-        int x = block % ACROSS * BLOCK + within % BLOCK;
-        int y = block / ACROSS * BLOCK + within / BLOCK;
-        own->column[count] = area.x + x;
-        own->row[count] = area.y + y;
-        count += x < area.width && y < area.height;
+        column[count] = area.x + work->column[i];
+        row[count] = area.y + work->row[i];
+        count += work->column[i] < area.width && work->row[i] < area.height;
     }
     return count;
 }
@@ -106,7 +122,7 @@ static void render_tile(void *user, int index, int worker) {
     struct render_thread *own = &f->work->threads[worker];
     memset(&own->sum, 0, sizeof own->sum);
     memset(own->taken, 0, sizeof own->taken);
-    int left_out = 0, count = list_pixels(own, area);
+    int left_out = 0, count = list_pixels(own, f->work, area);
     for (int sample = 0; sample < job->samples; sample++) {
         if (job->stopped && job->stopped(job->user)) {
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);

@@ -3,6 +3,7 @@
  * width of instructions (tracer/isa.h). */
 #include "tracer/intersect.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,26 +14,25 @@ typedef struct bundle {
     zt_box origins, directions;
 } bundle;
 
-static inline void range(real *restrict low, real *restrict high, const real *restrict values,
-                         int count) {
-    real l[ZT_BATCH_LANES], h[ZT_BATCH_LANES];
-    for (int j = 0; j < ZT_BATCH_LANES; j++) l[j] = h[j] = values[j < count ? j : 0];
-    int whole = count / ZT_BATCH_LANES * ZT_BATCH_LANES;
-    for (int i = 0; i < whole; i += ZT_BATCH_LANES)
-        for (int j = 0; j < ZT_BATCH_LANES; j++) {
-            l[j] = real_min(values[i + j], l[j]);
-            h[j] = real_max(values[i + j], h[j]);
-        }
-    for (int i = whole; i < count; i++) {
-        l[0] = real_min(values[i], l[0]);
-        h[0] = real_max(values[i], h[0]);
+/* Floats read as integers, and numbered so that the order of the integers is that of the
+ * floats: whose least and greatest a compiler finds many at a time without leave to reorder
+ * floats. */
+typedef int32_t __attribute__((may_alias)) float_bits;
+static inline int32_t in_order(int32_t bits) { return bits ^ ((bits >> 31) & INT32_MAX); }
+
+static void range(real *low, real *high, const real *values, int count) {
+    static_assert(sizeof(real) == sizeof(float_bits), "a real is a float");
+    const float_bits *bits = (const float_bits *)values;
+    int32_t least = INT32_MAX, greatest = INT32_MIN;
+    for (int i = 0; i < count; i++) {
+        int32_t number = in_order(bits[i]);
+        least = number < least ? number : least;
+        greatest = number > greatest ? number : greatest;
     }
-    *low = l[0];
-    *high = h[0];
-    for (int j = 1; j < ZT_BATCH_LANES; j++) {
-        *low = real_min(*low, l[j]);
-        *high = real_max(*high, h[j]);
-    }
+    least = in_order(least); /* its own inverse */
+    greatest = in_order(greatest);
+    memcpy(low, &least, sizeof *low);
+    memcpy(high, &greatest, sizeof *high);
 }
 
 static bundle bundle_of(const zt_batch *r) {

@@ -15,4 +15,11 @@
 #define WIDE_LOOP _Pragma("GCC ivdep")
 #endif
 
+/* For one function alone: compiled for each width as well, the loader chooses. */
+#if defined __x86_64__
+#define ZT_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ZT_CLONES
+#endif
+
 #endif

@@ -40,11 +40,16 @@ static void sample_pixel(float *u, float *v, int32_t column, int32_t row, int sa
     *v = unit_interval(scramble(sobol_second(index), (uint32_t)other));
 }
 
-void zt_sample_pixels(float *x, float *y, const int32_t *column, const int32_t *row, int count,
-                      int sample, int sample_count) {
+void zt_sample_pixels(float *restrict x, float *restrict y, const int32_t *restrict column,
+                      const int32_t *restrict row, int count, int sample, int sample_count) {
     for (int i = 0; i < count; i++) {
-        float u = 0.5f, v = 0.5f;
-        if (sample_count > 1) sample_pixel(&u, &v, column[i], row[i], sample);
+        x[i] = (float)column[i] + 0.5f;
+        y[i] = (float)row[i] + 0.5f;
+    }
+    if (sample_count == 1) return;
+    for (int i = 0; i < count; i++) {
+        float u, v;
+        sample_pixel(&u, &v, column[i], row[i], sample);
         x[i] = (float)column[i] + u;
         y[i] = (float)row[i] + v;
     }
