@@ -111,7 +111,9 @@ static void freeze(double *sum) {
         zt_scene scene;
         zt_arena_reset(&frame);
         double start = now_s();
-        must(zt_animation_freeze(&scene, &animation, round * 3.7, &frame) == ZT_OK, "freezing");
+        must(zt_animation_freeze(&scene, &animation, round * 3.7, &frame, (zt_listener){0}) ==
+                 ZT_OK,
+             "freezing");
         double took = now_s() - start;
         if (took < best) best = took;
         *sum += scene.objects[MOVING - 1].sphere.center.x;
