@@ -25,6 +25,7 @@ set(header_image image)
 set(header_animation keyframe)
 set(header_explain keyframe)
 set(header_output encode)
+set(header_drawing encode)
 set(header_renderer sequence)
 set(header_zoetrope cli)
 
@@ -39,6 +40,7 @@ set(doors
     "embree|tracer/meshes.c"
     "libav|encode/video.c"
     "libsw|encode/video.c"
+    "librsvg/|encode/raster.c"
     "SDL|cli/preview.c")
 
 # Headers of C and POSIX that any file may include, and those of C++, which have no ending.

@@ -20,7 +20,7 @@ enum { ZT_SUBJECT_CHANNELS_MAX = 9 };
 typedef struct zt_subject {
     const char *name;            /* "ball.center" */
     const char *meaning;         /* "the middle" */
-    const char *driver;          /* "constant"; of keys "smooth", "spring", "mixed" ... */
+    const char *driver;          /* "as zt_movement.driver says: "smooth", "orbit" ... */
     const char *unit;            /* of its numbers: "deg", or "" */
     const char *const *channels; /* "x" "y" "z"; "" of a single number */
     int channel_count;
@@ -48,8 +48,10 @@ zt_subject zt_subject_of_movement(const zt_animation *animation, int index);
 zt_subject_place zt_subject_stands_at(const zt_subject *subject);
 
 /* The value at a time in seconds, `channel_count` numbers as a description writes them (angles
- * in degrees, rotations as quaternions w x y z), before it is kept within least and most. */
-zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s);
+ * in degrees, rotations as quaternions w x y z); of keys, before it is kept within least and
+ * most. ZT_EDESCRIPTION, told, where an expression has no value at this time; ZT_EMEMORY. */
+zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s,
+                          zt_listener listener);
 
 /* The value as a person would say it: "#c8553d" of a colour (what a display shows), angles of a
  * rotation "[0, 45, 0] deg"; "" where the numbers say all. */
@@ -95,8 +97,9 @@ typedef struct zt_explanation {
     double round;              /* of a loop: which repetition; 0 is the keys as given */
 } zt_explanation;
 
+/* Fails as zt_subject_eval does. */
 zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subject,
-                             double time_s);
+                             double time_s, zt_listener listener);
 
 /* Tells as warnings, at their places, what is legal but probably not meant: values that leave
  * their range between keys, movement between two equal keys, a camera that looks along its up

@@ -7,6 +7,7 @@
 #define ZOETROPE_H
 
 #include <zoetrope/animation.h>
+#include <zoetrope/drawing.h>
 #include <zoetrope/explain.h>
 #include <zoetrope/image.h>
 #include <zoetrope/output.h>

@@ -1,27 +1,44 @@
 #include "cli/commands.h"
 
 #include <assert.h>
-#include <stdbool.h>
 #include <string.h>
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(QUIET) | BIT(HELP) | BIT(VERSION))
 #define ONE_FRAME   (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS))
 
+static const char images[] =
+    "  film.mp4         a movie, H.264\n"
+    "  frames.####.png  numbered images; also frames.%04d.png; also .exr .tif .jpg\n"
+    "  image.png        one image\n"
+    "  film.hash        a line with a checksum for each frame\n";
+static const char drawings[] = "  curves.svg       a drawing\n"
+                               "  curves.png       the same as an image\n";
+
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
-    [ZT_COMMAND_RENDER] = {"render", "FILE", 1, "All frames become a movie, or numbered images",
-                           "output/NAME.mp4", ONE_FRAME | BIT(FRAMES)},
-    [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, "Frame N alone becomes an image",
-                          "output/NAME.NNNN.png", ONE_FRAME},
-    [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1,
+    [ZT_COMMAND_RENDER] = {"render", "FILE", 1, false,
+                           "All frames become a movie, or numbered images", "output/NAME.mp4",
+                           images, ONE_FRAME | BIT(FRAMES)},
+    [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, false, "Frame N alone becomes an image",
+                          "output/NAME.NNNN.png", images, ONE_FRAME},
+    [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, false,
                             "A quick movie: a quarter of the size, one sample a pixel",
-                            "output/NAME.preview.mp4", ONE_FRAME | BIT(FRAMES)},
-    [ZT_COMMAND_CHECK] = {"check", "FILE", 1,
-                          "Tells the mistakes in FILE, or what the film holds", NULL, ANYWHERE},
+                            "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},
+    [ZT_COMMAND_CHECK] = {"check", "FILE", 1, false,
+                          "Tells the mistakes in FILE, or what the film holds", NULL, NULL,
+                          ANYWHERE},
+    [ZT_COMMAND_EXPLAIN] = {"explain", "FILE NAME@TIME", 2, false,
+                            "Tells what a property does at a frame or a time, and why: "
+                            "ball.center@37",
+                            NULL, NULL, ANYWHERE},
+    [ZT_COMMAND_CURVES] = {"curves", "FILE [NAME...]", 1, true,
+                           "Plots properties over time, or all that move: ball.center",
+                           "output/NAME.curves.svg", drawings,
+                           ANYWHERE | BIT(OUTPUT) | BIT(FRAMES)},
 };
 
 const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
-    [ZT_OPTION_OUTPUT] = {"output", 'o', "TARGET", "where the images go"},
+    [ZT_OPTION_OUTPUT] = {"output", 'o', "TARGET", "where the results go"},
     [ZT_OPTION_FRAMES] = {"frames", 0, "10-40",
                           "only these frames, or one (7); the first is 0"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
@@ -91,7 +108,7 @@ static void print_summary(FILE *stream) {
           "Makes a film of FILE, the description of an animation.\n\nCommands:\n",
           stream);
     for (int i = 0; i < ZT_COMMAND_COUNT; i++)
-        fprintf(stream, "  %-7s %-7s  %s\n", zt_commands[i].name, zt_commands[i].words,
+        fprintf(stream, "  %-7s %-14s  %s\n", zt_commands[i].name, zt_commands[i].words,
                 zt_commands[i].help);
 }
 
@@ -108,12 +125,7 @@ void zt_command_help(FILE *stream, zt_command command) {
     if (!row)
         fputs("\n\"zoetrope COMMAND --help\" tells more of a command.\n", stream);
     else if (row->target)
-        fprintf(
-            stream,
-            "\nTARGET is %s where none is given, NAME being that of FILE. It may be\n"
-            "  film.mp4         a movie, H.264\n"
-            "  frames.####.png  numbered images; also frames.%%04d.png; also .exr .tif .jpg\n"
-            "  image.png        one image\n"
-            "  film.hash        a line with a checksum for each frame\n",
-            row->target);
+        fprintf(stream,
+                "\nTARGET is %s where none is given, NAME being that of FILE. It may be\n%s",
+                row->target, row->forms);
 }

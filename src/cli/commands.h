@@ -3,6 +3,7 @@
 #ifndef ZT_CLI_COMMANDS_H
 #define ZT_CLI_COMMANDS_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 typedef enum zt_command {
@@ -10,6 +11,8 @@ typedef enum zt_command {
     ZT_COMMAND_FRAME,
     ZT_COMMAND_PREVIEW,
     ZT_COMMAND_CHECK,
+    ZT_COMMAND_EXPLAIN,
+    ZT_COMMAND_CURVES,
     ZT_COMMAND_COUNT /* none of them */
 } zt_command;
 
@@ -17,8 +20,10 @@ typedef struct zt_command_row {
     const char *name;
     const char *words; /* that it needs: "FILE N" */
     int word_count;
+    bool more_words; /* than those it needs */
     const char *help;
-    const char *target; /* where its images go by default, as help shows it; NULL: no images */
+    const char *target; /* where its images go by default, as help shows it; NULL: none */
+    const char *forms;  /* of the target, for help */
     unsigned takes;     /* a bit for each option */
 } zt_command_row;
 

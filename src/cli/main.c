@@ -10,6 +10,8 @@
 
 #include <zoetrope/zoetrope.h>
 
+#include "cli/curves.h"
+#include "cli/explain.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/report.h"
@@ -114,12 +116,6 @@ static zt_status render(const zt_options *options, const zt_animation *animation
     const zt_film *film = zt_animation_film(animation);
     int64_t first = options->all_frames ? 0 : options->first;
     int64_t last = options->all_frames ? film->frame_count - 1 : options->last;
-    if (last >= film->frame_count) {
-        zt_report_say(report, ZT_ERROR,
-                      "there is no frame %" PRId64 ": the film has frames 0 to %" PRId64, last,
-                      film->frame_count - 1);
-        return ZT_EARGUMENT;
-    }
     char *target = zt_options_target(options);
     if (!target) return ZT_EMEMORY;
     zt_render_settings settings = choose_settings(options, film);
@@ -133,8 +129,32 @@ static zt_status render(const zt_options *options, const zt_animation *animation
 }
 
 static zt_status check(const zt_animation *animation, zt_report *report) {
+    zt_status status = zt_animation_advise(animation, zt_report_listener(report));
+    if (status != ZT_OK) return status;
     zt_report_contents(animation);
     return zt_report_finish(report);
+}
+
+/* What was asked for, of an animation that has been read. */
+static zt_status run(const zt_options *options, const zt_animation *animation,
+                     zt_report *report) {
+    const zt_film *film = zt_animation_film(animation);
+    if (options->last >= film->frame_count) {
+        zt_report_say(report, ZT_ERROR,
+                      "there is no frame %" PRId64 ": the film has frames 0 to %" PRId64,
+                      options->last, film->frame_count - 1);
+        return ZT_EARGUMENT;
+    }
+    switch (options->command) {
+    case ZT_COMMAND_CHECK:
+        return check(animation, report);
+    case ZT_COMMAND_EXPLAIN:
+        return zt_explain(animation, options->question, report);
+    case ZT_COMMAND_CURVES:
+        return zt_curves(options, animation, report);
+    default:
+        return render(options, animation, report);
+    }
 }
 
 static int exit_code(zt_status status, zt_report *report) {
@@ -169,9 +189,7 @@ int main(int argc, char **argv) {
     report.quiet = options.quiet;
     zt_animation *animation = NULL;
     zt_status status = zt_animation_read(&animation, options.file, zt_report_listener(&report));
-    if (status == ZT_OK)
-        status = options.command == ZT_COMMAND_CHECK ? check(animation, &report)
-                                                     : render(&options, animation, &report);
+    if (status == ZT_OK) status = run(&options, animation, &report);
     zt_animation_free(&animation);
     return exit_code(status, &report);
 }

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536, WORDS_MAX = 4 };
+enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
 static const int64_t frame_max = INT64_C(1) << 40;
 
 /* The arguments, sorted but not yet understood. */
 typedef struct arguments {
     const char *values[ZT_OPTION_COUNT]; /* NULL: not given; "" where it takes no value */
-    const char *words[WORDS_MAX];        /* command, file, frame, and one too many */
+    char **words; /* command, file and more, moved to the begin of argv; NULL after the last */
     int word_count;
 } arguments;
 
@@ -86,16 +86,18 @@ static int take_option(arguments *sorted, int i, char **argv, zt_report *report)
 
 static bool sort_arguments(arguments *sorted, int argc, char **argv, zt_report *report) {
     bool only_words = false;
+    sorted->words = argv;
     for (int i = 1; i < argc; i++) {
         if (!only_words && strcmp(argv[i], "--") == 0) {
             only_words = true;
         } else if (only_words || argv[i][0] != '-' || !argv[i][1]) {
-            if (sorted->word_count < WORDS_MAX) sorted->words[sorted->word_count++] = argv[i];
+            argv[sorted->word_count++] = argv[i];
         } else {
             i = take_option(sorted, i, argv, report);
             if (i == 0) return false;
         }
     }
+    argv[sorted->word_count] = NULL;
     return true;
 }
 
@@ -172,13 +174,17 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         zt_report_say(report, ZT_ERROR, "%s needs %s", command->name, command->words);
         return false;
     }
-    if (sorted->word_count > expected) {
+    if (sorted->word_count > expected && !command->more_words) {
         zt_report_say(report, ZT_ERROR, "one word too many: %s", sorted->words[expected]);
         return false;
     }
     options->file = sorted->words[1];
-    const char *frame = sorted->words[2]; /* NULL where the command needs none */
-    return !frame || read_frame(options, frame, report);
+    if (options->command == ZT_COMMAND_FRAME)
+        return read_frame(options, sorted->words[2], report);
+    if (options->command == ZT_COMMAND_EXPLAIN) options->question = sorted->words[2];
+    options->properties = (const char *const *)sorted->words + 2;
+    options->property_count = sorted->word_count - 2;
+    return true;
 }
 
 static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
@@ -245,6 +251,9 @@ char *zt_options_target(const zt_options *options) {
     case ZT_COMMAND_FRAME:
         printed =
             asprintf(&target, "output/%.*s.%04" PRId64 ".png", length, name, options->first);
+        break;
+    case ZT_COMMAND_CURVES:
+        printed = asprintf(&target, "output/%.*s.curves.svg", length, name);
         break;
     case ZT_COMMAND_PREVIEW:
         printed = asprintf(&target, "output/%.*s.preview.mp4", length, name);

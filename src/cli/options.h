@@ -12,8 +12,11 @@
 
 typedef struct zt_options {
     zt_command command;
-    const char *file;            /* the description */
-    const char *target;          /* NULL: the command's own */
+    const char *file;              /* the description */
+    const char *target;            /* NULL: the command's own */
+    const char *question;          /* of explain: "ball.center@37" */
+    const char *const *properties; /* of curves: property_count names, none for all */
+    int property_count;
     bool all_frames;             /* else first .. last, both included */
     int64_t first, last;         /* 0 <= first <= last */
     zt_render_settings settings; /* zero where not given */
@@ -27,7 +30,8 @@ typedef enum zt_request {
 } zt_request;
 
 /* Reads GNU-style arguments: options anywhere, "--size=4x4" as "--size 4x4", "-ofilm.mp4" as
- * "-o film.mp4", nothing but words after "--". `argv` ends with NULL; its texts stay its own.
+ * "-o film.mp4", nothing but words after "--". `argv` ends with NULL; its words are moved to
+ * its begin, its texts stay its own.
  */
 zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report);
 

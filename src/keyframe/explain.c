@@ -78,11 +78,12 @@ zt_moment_words zt_moment_in_words(zt_rate rate, double time_s) {
  */
 
 /* What changed from one time to another: numbers, or a turn around the axes in radians. */
-static zt_status change(double *way, const zt_subject *subject, double from_s, double to_s) {
+static zt_status change(double *way, const zt_subject *subject, double from_s, double to_s,
+                        zt_listener listener) {
     const zt_track *track = &subject->film->tracks[subject->track];
     double a[ZT_SUBJECT_CHANNELS_MAX], b[ZT_SUBJECT_CHANNELS_MAX];
-    ZT_TRY(zt_subject_eval(a, subject, from_s));
-    ZT_TRY(zt_subject_eval(b, subject, to_s));
+    ZT_TRY(zt_subject_eval(a, subject, from_s, listener));
+    ZT_TRY(zt_subject_eval(b, subject, to_s, listener));
     if (track->property->kind == ZT_VALUE_ROTATION) {
         quat qa = {a[0], a[1], a[2], a[3]}, qb = {b[0], b[1], b[2], b[3]};
         if (quat_dot(qa, qb) < 0) qb = quat_scale(qb, -1);
@@ -106,7 +107,8 @@ static double way_duration_s(const zt_curve *curve, double time_s) {
 }
 
 /* By a difference of second order: central, or to the one side that has no key in between. */
-static zt_status difference(zt_explanation *e, const zt_subject *subject) {
+static zt_status difference(zt_explanation *e, const zt_subject *subject,
+                            zt_listener listener) {
     const zt_track *track = &subject->film->tracks[subject->track];
     const zt_curve *curve = track->kind == ZT_TRACK_CURVE ? &track->curve : NULL;
     double way_s = curve ? way_duration_s(curve, e->time_s) : 1;
@@ -116,14 +118,15 @@ static zt_status difference(zt_explanation *e, const zt_subject *subject) {
     bool behind = !curve || same_way(curve, t - h, t);
     bool central = behind && ahead;
     if (!ahead && behind) h = -h;
-    ZT_TRY(change(one, subject, central ? t - h : t, t + h));
-    if (!central) ZT_TRY(change(two, subject, t, t + 2 * h));
+    ZT_TRY(change(one, subject, central ? t - h : t, t + h, listener));
+    if (!central) ZT_TRY(change(two, subject, t, t + 2 * h, listener));
     for (int c = 0; c < e->velocity_count; c++)
         e->velocity[c] = (central ? one[c] : 4 * one[c] - two[c]) / (2 * h);
     return ZT_OK;
 }
 
-static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject) {
+static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject,
+                                  zt_listener listener) {
     const zt_track *track = &subject->film->tracks[subject->track];
     bool turns = track->property->kind == ZT_VALUE_ROTATION;
     e->velocity_channels = turns ? axes : subject->channels;
@@ -134,7 +137,7 @@ static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject) 
     if (e->velocity_exact)
         for (int c = 0; c < e->velocity_count; c++) e->velocity[c] *= unit;
     else {
-        ZT_TRY(difference(e, subject));
+        ZT_TRY(difference(e, subject, listener));
         for (int c = 0; turns && c < 3; c++) e->velocity[c] *= degrees;
     }
     return ZT_OK;
@@ -159,17 +162,17 @@ static void explain_keys(zt_explanation *e, const zt_curve *curve) {
 }
 
 zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subject,
-                             double time_s) {
+                             double time_s, zt_listener listener) {
     const zt_animation *animation = subject->film;
     *explanation = (zt_explanation){.time_s = time_s,
                                     .frame = frame_at(animation->film.rate, time_s),
                                     .key_before = -1,
                                     .key_after = -1};
-    ZT_TRY(zt_subject_eval(explanation->value, subject, time_s));
+    ZT_TRY(zt_subject_eval(explanation->value, subject, time_s, listener));
     for (int c = 0; c < subject->channel_count; c++)
         explanation->cut |=
             explanation->value[c] < subject->least || explanation->value[c] > subject->most;
-    ZT_TRY(explain_velocity(explanation, subject));
+    ZT_TRY(explain_velocity(explanation, subject, listener));
     if (subject->key_count > 0)
         explain_keys(explanation, &animation->tracks[subject->track].curve);
     return ZT_OK;

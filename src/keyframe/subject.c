@@ -92,23 +92,24 @@ zt_subject_place zt_subject_stands_at(const zt_subject *subject) {
 }
 
 /* What depends on other things is worked out with all of them. */
-static zt_status eval_in_scene(double *value, const zt_subject *subject, double time_s) {
+static zt_status eval_in_scene(double *value, const zt_subject *subject, double time_s,
+                               zt_listener listener) {
     const zt_track *track = track_of(subject);
     zt_arena arena = {0};
     zt_scene scene;
-    zt_status status =
-        zt_animation_freeze(&scene, subject->film, time_s, &arena, (zt_listener){NULL, NULL});
+    zt_status status = zt_animation_freeze(&scene, subject->film, time_s, &arena, listener);
     if (status == ZT_OK) zt_property_get(value, track->property, &scene, track->index);
     zt_arena_free(&arena);
     return status;
 }
 
-zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s) {
+zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s,
+                          zt_listener listener) {
     const zt_track *track = track_of(subject);
     if (track->kind == ZT_TRACK_CURVE)
         zt_curve_eval(value, &track->curve, time_s);
     else
-        ZT_TRY(eval_in_scene(value, subject, time_s));
+        ZT_TRY(eval_in_scene(value, subject, time_s, listener));
     to_written(value, subject);
     return ZT_OK;
 }
