@@ -16,16 +16,15 @@
 
 static const vec3 white = {1, 1, 1};
 
-/* Renders a scene to an image that the caller frees. */
-static zt_image *render(const zt_scene *scene, int width, int height, int samples,
-                        int threads) {
+/* Renders a scene to an image that the caller frees; *left_out samples were not finite. */
+static zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, int width,
+                                    int height, int samples, int threads) {
     zt_arena arena = {0};
     zt_meshes *meshes;
     zt_pool *pool;
     zt_render_work *work;
     zt_image *image;
     zt_tracer tracer;
-    int64_t left_out;
     assert_int_equal(
         zt_meshes_open(&meshes, scene->meshes, scene->mesh_count, (zt_listener){0}), ZT_OK);
     assert_int_equal(zt_pool_open(&pool, threads), ZT_OK);
@@ -35,11 +34,18 @@ static zt_image *render(const zt_scene *scene, int width, int height, int sample
     zt_render_job job = {.tracer = &tracer,
                          .lens = zt_lens_prepare(&scene->camera, width, height),
                          .samples = samples};
-    assert_int_equal(zt_render(image, &left_out, &job, work, pool), ZT_OK);
-    assert_int_equal(left_out, 0);
+    assert_int_equal(zt_render(image, left_out, &job, work, pool), ZT_OK);
     zt_pool_close(&pool);
     zt_meshes_close(&meshes);
     zt_arena_free(&arena);
+    return image;
+}
+
+static zt_image *render(const zt_scene *scene, int width, int height, int samples,
+                        int threads) {
+    int64_t left_out;
+    zt_image *image = render_leaving_out(&left_out, scene, width, height, samples, threads);
+    assert_int_equal(left_out, 0);
     return image;
 }
 
@@ -279,6 +285,24 @@ static void test_samples(void **state) {
     zt_image_free(&image);
 }
 
+/* Light without bound: what is not finite is left out and counted, and no pixel shows it. */
+static void test_not_finite(void **state) {
+    (void)state;
+    test_scene s;
+    scene_begin(&s);
+    scene_material(&s, (vec3){1e30, 1e30, 1e30}, 0);
+    scene_plane(&s, (vec3){0, 1, 0}, -1, 0); /* the lower half of the picture */
+    scene_ambient(&s, white, 1e30);
+    int64_t left_out;
+    zt_image *image = render_leaving_out(&left_out, &s.scene, 20, 20, 3, 2);
+    assert_int_equal(left_out, 20 * 20 / 2 * 3);
+    for (int i = 0; i < 20 * 20; i++) {
+        assert_float_equal(image->pixels[4 * i], 0, 0);
+        assert_float_equal(image->pixels[4 * i + 3], 1, 0);
+    }
+    zt_image_free(&image);
+}
+
 /* The picture is the right way round: a ball up to the right is up to the right. */
 static void test_orientation(void **state) {
     (void)state;
@@ -304,7 +328,7 @@ int main(void) {
         cmocka_unit_test(test_inside),         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_threads),        cmocka_unit_test(test_isa),
         cmocka_unit_test(test_no_self_shadow), cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_not_finite),     cmocka_unit_test(test_orientation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
