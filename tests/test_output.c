@@ -264,9 +264,9 @@ static void rules(void **state) {
     assert_int_equal(entry_count("rules"), 2); /* the two images that were complete */
 
     const zt_output_format wrong[] = {
-        {0, 12, {24, 1}, ZT_VIEW_RAW},     {16, -2, {24, 1}, ZT_VIEW_RAW},
-        {16, 65538, {24, 1}, ZT_VIEW_RAW}, {16, 12, {0, 1}, ZT_VIEW_RAW},
-        {16, 12, {24, 0}, ZT_VIEW_RAW},    {16, 12, {-24, -1}, ZT_VIEW_RAW}};
+        {0, 12, {24, 1}, ZT_VIEW_RAW, 0},     {16, -2, {24, 1}, ZT_VIEW_RAW, 0},
+        {16, 65538, {24, 1}, ZT_VIEW_RAW, 0}, {16, 12, {0, 1}, ZT_VIEW_RAW, 0},
+        {16, 12, {24, 0}, ZT_VIEW_RAW, 0},    {16, 12, {-24, -1}, ZT_VIEW_RAW, 0}};
     for (int i = 0; i < 6; i++) {
         assert_int_equal(zt_output_open(&output, "wrong/a.mp4", &wrong[i], listener_of(&h)),
                          ZT_EARGUMENT);

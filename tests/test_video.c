@@ -18,7 +18,7 @@
 
 enum { FRAMES_MAX = 512 };
 
-static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB};
+static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0};
 
 static zt_output *open_movie(const char *path, const zt_output_format *format) {
     heard h;
@@ -198,7 +198,7 @@ static void times_are_exact(void **state) {
 static void tags(void **state) {
     (void)state;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {322, 178, {24, 1}, view};
+        zt_output_format format = {322, 178, {24, 1}, view, 0};
         write_movie("tags.mp4", &format, 5);
         film m = film_open("tags.mp4");
         const AVCodecParameters *p = m.stream->codecpar;
@@ -321,7 +321,7 @@ static void colours(void **state) {
     (void)state;
     const int frame_count = 30, width = COLUMNS * PATCH;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {width, PATCH_COUNT / COLUMNS * PATCH, {24, 1}, view};
+        zt_output_format format = {width, PATCH_COUNT / COLUMNS * PATCH, {24, 1}, view, 0};
         zt_image *card;
         assert_int_equal(zt_image_create(&card, format.width, format.height), ZT_OK);
         for (int i = 0; i < format.width * format.height; i++) {
@@ -351,7 +351,7 @@ static void colours(void **state) {
  * so. */
 static void chroma_is_left(void **state) {
     (void)state;
-    zt_output_format format = {64, 64, {24, 1}, ZT_VIEW_RAW};
+    zt_output_format format = {64, 64, {24, 1}, ZT_VIEW_RAW, 0};
     zt_image *image;
     assert_int_equal(zt_image_create(&image, 64, 64), ZT_OK);
     for (int y = 0; y < 64; y++)
@@ -386,14 +386,14 @@ static void impossible_sizes(void **state) {
     for (int i = 0; i < 4; i++) {
         heard h;
         zt_output *output;
-        zt_output_format format = {sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB};
+        zt_output_format format = {sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB, 0};
         assert_int_not_equal(zt_output_open(&output, "sizes/a.mp4", &format, listener_of(&h)),
                              ZT_OK);
         assert_null(output);
         assert_told(&h, sizes[i].words);
         assert_false(exists("sizes/a.mp4") || exists("sizes/a.mp4.part"));
     }
-    zt_output_format least = {2, 2, {24, 1}, ZT_VIEW_SRGB};
+    zt_output_format least = {2, 2, {24, 1}, ZT_VIEW_SRGB, 0};
     write_movie("least.mp4", &least, 3);
     film m = film_open("least.mp4");
     assert_int_equal(m.packet_count, 3);
@@ -448,7 +448,7 @@ static void interrupted_anywhere(void **state) {
  * an older film stays. With room for the pictures but not for the table at the end, too. */
 static void full_disk(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB};
+    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0};
     write_movie("whole.mp4", &format, 100);
     struct stat whole;
     assert_int_equal(stat("whole.mp4", &whole), 0);
@@ -482,7 +482,7 @@ static void full_disk(void **state) {
 /* The same film is the same file, also where the process may use only one core. */
 static void same_bits(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB};
+    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0};
     write_movie("a.mp4", &format, 60);
     write_movie("b.mp4", &format, 60);
     assert_true(same_files("a.mp4", "b.mp4"));
