@@ -20,15 +20,18 @@ enum { ZT_SUBJECT_CHANNELS_MAX = 9 };
 typedef struct zt_subject {
     const char *name;            /* "ball.center" */
     const char *meaning;         /* "the middle" */
-    const char *driver;          /* "as zt_movement.driver says: "smooth", "orbit" ... */
+    const char *driver;          /* ""constant", or as zt_movement.driver says */
     const char *unit;            /* of its numbers: "deg", or "" */
     const char *const *channels; /* "x" "y" "z"; "" of a single number */
     int channel_count;
-    int key_count;            /* 0 where it has no keys */
-    bool is_color;            /* linear light */
-    double least, most;       /* what each number may be; +-INFINITY */
-    const zt_animation *film; /* the animation that it is of */
-    int track;                /* which of its movements, -1 of a constant */
+    int key_count;      /* 0 where it has no keys */
+    bool is_color;      /* linear light */
+    double least, most; /* what each number may be; +-INFINITY */
+    /* How the library finds it. */
+    const zt_animation *film;
+    const struct zt_property *property;
+    int32_t index;
+    int movement; /* its number; -1 of what does not move */
 } zt_subject;
 
 /* Where something stands in the description; line 0 where that is not known. */
@@ -64,8 +67,8 @@ zt_subject_words zt_subject_in_words(const zt_subject *subject, const double *va
 typedef struct zt_subject_key {
     double time_s;
     double value[ZT_SUBJECT_CHANNELS_MAX];
-    const char *way;  /* the kind of the way to the next key: "smooth"; NULL after the last */
-    const char *ease; /* the family of the easing that spreads it over its time, or NULL */
+    const char *way; /* the kind of the way to the next key: "smooth"; NULL after the last */
+    char ease[80];   /* what spreads it over its time: "ease-in-out"; "" for nothing */
     zt_subject_place place;
 } zt_subject_key;
 
@@ -101,9 +104,9 @@ typedef struct zt_explanation {
 zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subject,
                              double time_s, zt_listener listener);
 
-/* Tells as warnings, at their places, what is legal but probably not meant: values that leave
- * their range between keys, movement between two equal keys, a camera that looks along its up
- * vector or is inside of a sphere. Looks at every frame and between frames, but at no more than
+/* Tells as warnings, at their places, what is legal but probably not meant and shows only in
+ * motion: values that leave their range between keys, a camera that looks along its up vector
+ * or is inside of a sphere. Looks at every frame and between frames, but at no more than
  * 10,000 moments, evenly spread over longer films. ZT_EMEMORY is all that can fail. */
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener);
 

@@ -68,7 +68,7 @@ static void print_way(const zt_subject *subject, const zt_explanation *e) {
     if (e->key_before >= 0 && e->key_after >= 0) {
         zt_subject_key key = zt_subject_key_at(subject, e->key_before);
         printf("%s", key.way);
-        if (key.ease) printf(", spread by %s", key.ease);
+        if (*key.ease) printf(", spread by %s", key.ease);
         printf(": u = %.6g of its time", e->u);
         if (e->s != e->u) printf(", s = %.6g of its curve", e->s);
     } else

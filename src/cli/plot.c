@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -252,11 +253,14 @@ static zt_status print_strip(const panel *p, double top) {
 static void print_title(const panel *p, double panel_top) {
     const zt_subject *subject = p->subject;
     int legend = subject->channel_count > 1 ? subject->channel_count * LEGEND_SLOT : 0;
-    int letters = (RIGHT - LEFT - legend - 190) / 9;
+    int letters = (RIGHT - LEFT - legend - 240) / 9;
     fprintf(p->out, "<text x=\"%d\" y=\"%g\" class=\"title\">", LEFT, panel_top + 25);
     print_words(p->out, subject->name, letters > 12 ? letters : 12);
     fputs("<tspan class=\"n\" dx=\"10\">", p->out);
-    print_words(p->out, subject->driver, 20);
+    zt_subject_key key = {.ease = ""};
+    if (subject->key_count > 0) key = zt_subject_key_at(subject, 0);
+    bool eased = strcmp(subject->driver, "eased") == 0; /* by one easing for all */
+    print_words(p->out, eased ? key.ease : subject->driver, 32);
     if (subject->key_count > 0)
         fprintf(p->out, ", %d key%s", subject->key_count, subject->key_count == 1 ? "" : "s");
     if (*subject->unit) fprintf(p->out, ", in %s", subject->unit);

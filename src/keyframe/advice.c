@@ -1,8 +1,6 @@
 #include "keyframe/advice.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "keyframe/curve_inside.h"
 
@@ -124,61 +122,13 @@ static void advise_range(const zt_animation *animation, const zt_track *track,
                unit, w.value < w.bound ? "least" : "most");
 }
 
-/* ---- movement between equal keys -----------------------------------------------------------
+/* ---- all of it -----------------------------------------------------------------------------
  */
-
-/* The largest size of a number among the keys. */
-static double size_of(const zt_curve *curve) {
-    double size = 0;
-    for (int64_t i = 0; i < (int64_t)curve->key_count * curve->width; i++)
-        size = fmax(size, fabs(curve->values[i]));
-    return size;
-}
-
-/* How far, in any of its numbers, the curve goes away from two equal keys between them. */
-static double moves_between(const zt_curve *curve, int32_t way) {
-    enum { LOOKS = 16 };
-    const double *a = curve->values + (int64_t)way * curve->width, *b = a + curve->width;
-    double value[ZT_VALUE_WIDTH_MAX], most = 0;
-    if (memcmp(a, b, (size_t)curve->width * sizeof *a) != 0) return 0;
-    for (int i = 1; i < LOOKS; i++) {
-        double time_s = way_time(curve, way, (double)i / LOOKS);
-        zt_curve_eval(value, curve, time_s);
-        for (int32_t c = 0; c < curve->width; c++) most = fmax(most, fabs(value[c] - a[c]));
-    }
-    return most;
-}
-
-static void advise_equal_keys(const zt_animation *animation, const zt_track *track,
-                              zt_listener listener) {
-    const zt_curve *curve = &track->curve;
-    zt_rate rate = animation->film.rate;
-    double size = size_of(curve), unit = zt_property_unit(track->property);
-    int32_t ways = curve->key_count - 1, found = 0, first = 0;
-    double most = 0;
-    if (curve->spring) return; /* it is meant to swing on */
-    for (int32_t way = 0; way < ways && way < ZT_ADVICE_MOMENTS_MAX; way++) {
-        if (curve->kinds[way] <= ZT_CURVE_SMOOTH) continue;
-        double moved = moves_between(curve, way);
-        if (moved <= 1e-6 * size) continue;
-        if (found++ == 0) first = way, most = moved;
-    }
-    if (found == 0) return;
-    char further[48] = "";
-    if (found > 1) snprintf(further, sizeof further, "; so do %d further pairs", found - 1);
-    zt_moment_words begin = zt_moment_in_words(rate, curve->times[first]);
-    zt_moment_words end = zt_moment_in_words(rate, curve->times[first + 1]);
-    zt_tell_at(listener, ZT_WARNING, place_at(track, curve->times[first]),
-               "%s moves by up to %.3g between two equal keys, %s and %s%s; smooth or hold "
-               "would stay",
-               track->name, most / unit, begin.text, end.text, further);
-}
 
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener) {
     for (int32_t i = 0; i < animation->track_count; i++) {
-        if (animation->tracks[i].kind != ZT_TRACK_CURVE) continue;
-        advise_range(animation, &animation->tracks[i], listener);
-        advise_equal_keys(animation, &animation->tracks[i], listener);
+        const zt_track *track = &animation->tracks[i];
+        if (track->kind == ZT_TRACK_CURVE) advise_range(animation, track, listener);
     }
     return zt_advice_camera(animation, listener);
 }

@@ -63,6 +63,14 @@ static void look_around(findings *f, const zt_scene *scene, xform *worlds, doubl
     }
 }
 
+static const char *sphere_name(const zt_animation *animation, int32_t object) {
+    for (int32_t i = 0; i < animation->thing_count; i++)
+        if (animation->things[i].owner == ZT_OWNER_SPHERE &&
+            animation->things[i].index == object)
+            return animation->things[i].name;
+    return "a sphere";
+}
+
 static void tell(const findings *f, const zt_animation *animation, zt_listener listener) {
     zt_rate rate = animation->film.rate;
     const zt_place *place = camera_place(animation);
@@ -78,7 +86,7 @@ static void tell(const findings *f, const zt_animation *animation, zt_listener l
     for (int32_t i = 0; i < animation->rest.object_count; i++) {
         if (isnan(f->inside_s[i])) continue;
         zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s from %s to %s",
-                   "a sphere", zt_moment_in_words(rate, f->inside_s[i]).text,
+                   sphere_name(animation, i), zt_moment_in_words(rate, f->inside_s[i]).text,
                    zt_moment_in_words(rate, f->outside_s[i]).text);
     }
 }

@@ -41,6 +41,13 @@ typedef struct zt_track {
     const zt_place *key_places; /* one per key of the curve; NULL where none is known */
 } zt_track;
 
+/* Something that has properties. */
+typedef struct zt_thing {
+    zt_owner owner;
+    int32_t index;    /* as zt_property_get takes it */
+    const char *name; /* "camera", "ball", "sphere 2" */
+} zt_thing;
+
 /* The struct itself is the reader's calloc; zt_animation_free gives it back. */
 struct zt_animation {
     zt_arena arena; /* owns all below but the formulas */
@@ -48,6 +55,8 @@ struct zt_animation {
     zt_scene rest; /* all that does not move has its value here */
     const zt_track *tracks;
     int32_t track_count;
+    const zt_thing *things; /* all of them, moving or not */
+    int32_t thing_count;
     const int32_t *order; /* of evaluation: indices of tracks, each after those that it needs;
                              NULL for the tracks' own order */
     zt_formulas formulas;

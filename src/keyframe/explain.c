@@ -77,14 +77,19 @@ zt_moment_words zt_moment_in_words(zt_rate rate, double time_s) {
 /* ---- velocity ------------------------------------------------------------------------------
  */
 
+/* The curve of a property with keys, else NULL. */
+static const zt_curve *curve_of(const zt_subject *subject) {
+    if (subject->key_count == 0) return NULL;
+    return &subject->film->tracks[subject->movement].curve;
+}
+
 /* What changed from one time to another: numbers, or a turn around the axes in radians. */
 static zt_status change(double *way, const zt_subject *subject, double from_s, double to_s,
                         zt_listener listener) {
-    const zt_track *track = &subject->film->tracks[subject->track];
     double a[ZT_SUBJECT_CHANNELS_MAX], b[ZT_SUBJECT_CHANNELS_MAX];
     ZT_TRY(zt_subject_eval(a, subject, from_s, listener));
     ZT_TRY(zt_subject_eval(b, subject, to_s, listener));
-    if (track->property->kind == ZT_VALUE_ROTATION) {
+    if (subject->property->kind == ZT_VALUE_ROTATION) {
         quat qa = {a[0], a[1], a[2], a[3]}, qb = {b[0], b[1], b[2], b[3]};
         if (quat_dot(qa, qb) < 0) qb = quat_scale(qb, -1);
         vec3 turn = vec3_scale(zt_rotation_log(quat_mul(qb, quat_conjugate(qa))), 2);
@@ -109,8 +114,7 @@ static double way_duration_s(const zt_curve *curve, double time_s) {
 /* By a difference of second order: central, or to the one side that has no key in between. */
 static zt_status difference(zt_explanation *e, const zt_subject *subject,
                             zt_listener listener) {
-    const zt_track *track = &subject->film->tracks[subject->track];
-    const zt_curve *curve = track->kind == ZT_TRACK_CURVE ? &track->curve : NULL;
+    const zt_curve *curve = curve_of(subject);
     double way_s = curve ? way_duration_s(curve, e->time_s) : 1;
     double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
     double one[ZT_SUBJECT_CHANNELS_MAX], two[ZT_SUBJECT_CHANNELS_MAX];
@@ -127,13 +131,14 @@ static zt_status difference(zt_explanation *e, const zt_subject *subject,
 
 static zt_status explain_velocity(zt_explanation *e, const zt_subject *subject,
                                   zt_listener listener) {
-    const zt_track *track = &subject->film->tracks[subject->track];
-    bool turns = track->property->kind == ZT_VALUE_ROTATION;
+    const zt_curve *curve = curve_of(subject);
+    bool turns = subject->property->kind == ZT_VALUE_ROTATION;
     e->velocity_channels = turns ? axes : subject->channels;
     e->velocity_count = turns ? 3 : subject->channel_count;
     double unit = turns || *subject->unit ? degrees : 1;
-    e->velocity_exact = track->kind == ZT_TRACK_CURVE &&
-                        zt_curve_velocity(e->velocity, &track->curve, e->time_s);
+    /* What does not move keeps the velocity of zero. */
+    e->velocity_exact =
+        subject->movement < 0 || (curve && zt_curve_velocity(e->velocity, curve, e->time_s));
     if (e->velocity_exact)
         for (int c = 0; c < e->velocity_count; c++) e->velocity[c] *= unit;
     else {
@@ -173,7 +178,6 @@ zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subj
         explanation->cut |=
             explanation->value[c] < subject->least || explanation->value[c] > subject->most;
     ZT_TRY(explain_velocity(explanation, subject, listener));
-    if (subject->key_count > 0)
-        explain_keys(explanation, &animation->tracks[subject->track].curve);
+    if (subject->key_count > 0) explain_keys(explanation, curve_of(subject));
     return ZT_OK;
 }

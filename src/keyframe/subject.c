@@ -36,50 +36,105 @@ double zt_property_unit(const zt_property *property) {
     return property->unit ? 3.14159265358979323846 / 180 : 1; /* "deg" is the only one */
 }
 
+/* What moves a property; NULL where nothing does. */
 static const zt_track *track_of(const zt_subject *subject) {
-    return &subject->film->tracks[subject->track];
+    return subject->movement < 0 ? NULL : &subject->film->tracks[subject->movement];
 }
 
 static void to_written(double *value, const zt_subject *subject) {
-    double unit = *subject->unit ? zt_property_unit(track_of(subject)->property) : 1;
+    double unit = *subject->unit ? zt_property_unit(subject->property) : 1;
     for (int c = 0; c < subject->channel_count; c++) value[c] /= unit;
 }
 
-zt_subject zt_subject_of_movement(const zt_animation *animation, int index) {
-    const zt_track *track = &animation->tracks[index];
-    const zt_property *property = track->property;
-    zt_movement movement = zt_animation_movement(animation, index);
+/* ---- finding -------------------------------------------------------------------------------
+ */
+
+static zt_subject subject_of(const zt_animation *animation, const zt_property *property,
+                             int32_t index) {
     bool angle = property->kind == ZT_VALUE_ANGLE;
-    return (zt_subject){.name = track->name,
-                        .meaning = property->meaning,
-                        .driver = movement.driver,
+    return (zt_subject){.meaning = property->meaning,
                         .unit = angle ? property->unit : "",
                         .channels = channel_names(property->kind),
                         .channel_count = zt_value_width(property->kind),
-                        .key_count = movement.key_count,
                         .is_color = property->kind == ZT_VALUE_COLOR,
                         .least = property->min,
                         .most = property->max,
                         .film = animation,
-                        .track = index};
+                        .property = property,
+                        .index = index,
+                        .movement = -1};
+}
+
+zt_subject zt_subject_of_movement(const zt_animation *animation, int index) {
+    const zt_track *track = &animation->tracks[index];
+    zt_movement movement = zt_animation_movement(animation, index);
+    zt_subject subject = subject_of(animation, track->property, track->index);
+    subject.name = track->name;
+    subject.driver = movement.driver;
+    subject.key_count = movement.key_count;
+    subject.movement = index;
+    return subject;
+}
+
+/* Whether `name` is that of a thing's property: the thing, a dot, the property. */
+static bool is_property_of(const zt_thing *thing, const zt_property *property,
+                           const char *name) {
+    size_t length = strlen(thing->name);
+    return property->owner == thing->owner && strncmp(name, thing->name, length) == 0 &&
+           name[length] == '.' && zt_text_equal(name + length + 1, property->name);
+}
+
+/* A property that does not move. Its name is the caller's, as long as nothing keeps it. */
+static bool find_constant(zt_subject *subject, const zt_animation *animation,
+                          const char *name) {
+    for (int32_t i = 0; i < animation->thing_count; i++)
+        for (int p = 0; p < zt_property_count; p++) {
+            const zt_thing *thing = &animation->things[i];
+            if (!is_property_of(thing, &zt_properties[p], name)) continue;
+            *subject = subject_of(animation, &zt_properties[p], thing->index);
+            subject->name = name;
+            subject->driver = "constant";
+            return true;
+        }
+    return false;
+}
+
+/* Shows all names of properties, moving or not. */
+static void suggest(zt_nearest *nearest, char *room, size_t size,
+                    const zt_animation *animation) {
+    char name[256];
+    for (int i = 0; i < animation->track_count; i++) {
+        zt_nearest_try(nearest, animation->tracks[i].name);
+    }
+    for (int32_t i = 0; i < animation->thing_count; i++)
+        for (int p = 0; p < zt_property_count; p++) {
+            const zt_thing *thing = &animation->things[i];
+            if (zt_properties[p].owner != thing->owner) continue;
+            snprintf(name, sizeof name, "%s.%s", thing->name, zt_properties[p].name);
+            zt_nearest_try(nearest, name);
+            if (nearest->best != name) continue;
+            snprintf(room, size, "%s", name); /* the next one is written over it */
+            nearest->best = room;
+        }
 }
 
 zt_status zt_subject_find(zt_subject *subject, const zt_animation *animation, const char *name,
                           zt_listener listener) {
+    for (int i = 0; i < animation->track_count; i++)
+        if (zt_text_equal(animation->tracks[i].name, name)) {
+            *subject = zt_subject_of_movement(animation, i);
+            return ZT_OK;
+        }
+    if (find_constant(subject, animation, name)) return ZT_OK;
+    char room[256];
     zt_nearest nearest = zt_nearest_to(name);
-    for (int i = 0; i < animation->track_count; i++) {
-        const char *known = animation->tracks[i].name;
-        zt_nearest_try(&nearest, known);
-        if (!zt_text_equal(known, name)) continue;
-        *subject = zt_subject_of_movement(animation, i);
-        return ZT_OK;
-    }
+    suggest(&nearest, room, sizeof room, animation);
     if (nearest.best)
-        zt_tell(listener, ZT_ERROR, "nothing that moves is called %s; did you mean %s?", name,
+        zt_tell(listener, ZT_ERROR, "nothing is called %s; did you mean %s?", name,
                 nearest.best);
     else
-        zt_tell(listener, ZT_ERROR,
-                "nothing that moves is called %s; zoetrope check lists what moves", name);
+        zt_tell(listener, ZT_ERROR, "nothing is called %s; zoetrope check lists what moves",
+                name);
     return ZT_EARGUMENT;
 }
 
@@ -88,17 +143,17 @@ static zt_subject_place public_place(const zt_place *place) {
 }
 
 zt_subject_place zt_subject_stands_at(const zt_subject *subject) {
-    return public_place(&track_of(subject)->place);
+    const zt_track *track = track_of(subject);
+    return track ? public_place(&track->place) : (zt_subject_place){NULL, 0, 0};
 }
 
 /* What depends on other things is worked out with all of them. */
 static zt_status eval_in_scene(double *value, const zt_subject *subject, double time_s,
                                zt_listener listener) {
-    const zt_track *track = track_of(subject);
     zt_arena arena = {0};
     zt_scene scene;
     zt_status status = zt_animation_freeze(&scene, subject->film, time_s, &arena, listener);
-    if (status == ZT_OK) zt_property_get(value, track->property, &scene, track->index);
+    if (status == ZT_OK) zt_property_get(value, subject->property, &scene, subject->index);
     zt_arena_free(&arena);
     return status;
 }
@@ -106,7 +161,9 @@ static zt_status eval_in_scene(double *value, const zt_subject *subject, double 
 zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_s,
                           zt_listener listener) {
     const zt_track *track = track_of(subject);
-    if (track->kind == ZT_TRACK_CURVE)
+    if (!track)
+        zt_property_get(value, subject->property, &subject->film->rest, subject->index);
+    else if (track->kind == ZT_TRACK_CURVE)
         zt_curve_eval(value, &track->curve, time_s);
     else
         ZT_TRY(eval_in_scene(value, subject, time_s, listener));
@@ -117,11 +174,43 @@ zt_status zt_subject_eval(double *value, const zt_subject *subject, double time_
 /* ---- keys ----------------------------------------------------------------------------------
  */
 
-static const char *ease_name(const zt_ease *ease) {
-    static const char *const names[] = {"cubic-bezier", "steps",   "linear()", "sine", "quad",
-                                        "cubic",        "quart",   "quint",    "expo", "circ",
-                                        "back",         "elastic", "bounce"};
-    return ease ? names[ease->kind] : NULL;
+static void write_bezier(char *text, size_t size, const zt_ease *ease) {
+    static const struct {
+        const char *word;
+        double x1, y1, x2, y2;
+    } named[] = {{"ease", 0.25, 0.1, 0.25, 1},
+                 {"ease-in", 0.42, 0, 1, 1},
+                 {"ease-out", 0, 0, 0.58, 1},
+                 {"ease-in-out", 0.42, 0, 0.58, 1}};
+    for (int i = 0; i < 4; i++)
+        if (ease->x1 == named[i].x1 && ease->y1 == named[i].y1 && ease->x2 == named[i].x2 &&
+            ease->y2 == named[i].y2) {
+            snprintf(text, size, "%s", named[i].word);
+            return;
+        }
+    snprintf(text, size, "cubic-bezier(%g, %g, %g, %g)", ease->x1, ease->y1, ease->x2,
+             ease->y2);
+}
+
+/* An easing as a description writes it, but for the stops of linear(). */
+static void write_ease(char *text, size_t size, const zt_ease *ease) {
+    static const char *const families[] = {"sine", "quad", "cubic", "quart",   "quint",
+                                           "expo", "circ", "back",  "elastic", "bounce"};
+    static const char *const ways[] = {"in", "out", "in-out"};
+    static const char *const jumps[] = {"jump-start", "jump-end", "jump-none", "jump-both"};
+    switch (ease->kind) {
+    case ZT_EASE_BEZIER:
+        write_bezier(text, size, ease);
+        break;
+    case ZT_EASE_STEPS:
+        snprintf(text, size, "steps(%d, %s)", ease->step_count, jumps[ease->jump]);
+        break;
+    case ZT_EASE_STOPS:
+        snprintf(text, size, "linear() of %d stops", ease->stop_count);
+        break;
+    default:
+        snprintf(text, size, "%s-%s", families[ease->kind - ZT_EASE_SINE], ways[ease->way]);
+    }
 }
 
 zt_subject_key zt_subject_key_at(const zt_subject *subject, int key) {
@@ -133,7 +222,8 @@ zt_subject_key zt_subject_key_at(const zt_subject *subject, int key) {
     to_written(out.value, subject);
     if (key + 1 < curve->key_count) {
         out.way = curve->spring ? "spring" : zt_curve_name((zt_curve_kind)curve->kinds[key]);
-        out.ease = curve->eases && !curve->spring ? ease_name(curve->eases[key]) : NULL;
+        const zt_ease *ease = curve->eases && !curve->spring ? curve->eases[key] : NULL;
+        if (ease) write_ease(out.ease, sizeof out.ease, ease);
     }
     if (track->key_places) out.place = public_place(&track->key_places[key]);
     return out;
@@ -159,7 +249,7 @@ static void angles_of(double angles[3], const double *wxyz_values) {
 
 zt_subject_words zt_subject_in_words(const zt_subject *subject, const double *value) {
     zt_subject_words words = {""};
-    zt_value_kind kind = track_of(subject)->property->kind;
+    zt_value_kind kind = subject->property->kind;
     if (kind == ZT_VALUE_COLOR) {
         int bytes[3];
         for (int c = 0; c < 3; c++)
