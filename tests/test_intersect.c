@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
+#define ZT_ISA base
 #include "scenes.h"
-#include "tracer/tracer.h"
+#include "tracer/intersect.h"
 
 typedef long double exact;
 
@@ -372,13 +373,137 @@ static void test_ties(void **state) {
     zt_meshes_close(&meshes);
 }
 
+/* A cloud of small triangles along a bow, far from its own origin. */
+enum { SOUP = 600 };
+static float soup_positions[SOUP * 9 + 1];
+static uint32_t soup_triangles[SOUP * 3];
+
+static zt_mesh make_soup(uint64_t *seed) {
+    zt_mesh mesh = {.origin = {1000, -2000, 500},
+                    .positions = soup_positions,
+                    .triangles = soup_triangles,
+                    .vertex_count = SOUP * 3,
+                    .triangle_count = SOUP,
+                    .low = {INFINITY, INFINITY, INFINITY},
+                    .high = {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < SOUP * 3; i++) {
+        double along = 4.0 * (i / 3) / SOUP;
+        vec3 p = vec3_add((vec3){2 * cos(along), 2 * sin(along), along / 2},
+                          vec3_scale(test_direction(seed), .2));
+        soup_positions[3 * i] = (float)p.x;
+        soup_positions[3 * i + 1] = (float)p.y;
+        soup_positions[3 * i + 2] = (float)p.z;
+        soup_triangles[i] = (uint32_t)i;
+        mesh.low = vec3_min(mesh.low, vec3_add(mesh.origin, p));
+        mesh.high = vec3_max(mesh.high, vec3_add(mesh.origin, p));
+    }
+    return mesh;
+}
+
+/* The nearest hit by asking each primitive for each ray, and Embree for all of them. */
+static void intersect_all(zt_batch *rays, const zt_tracer *tracer) {
+    for (int i = 0; i < rays->count; i++) {
+        ray r = {{rays->ox[i], rays->oy[i], rays->oz[i]},
+                 {rays->dx[i], rays->dy[i], rays->dz[i]}};
+        rays->t[i] = REAL_INFINITY, rays->hit[i] = -1;
+        for (int32_t p = 0; p < tracer->primitive_count; p++) {
+            if (tracer->primitives[p].kind == ZT_PRIMITIVE_MESH) continue;
+            real t = meet(&tracer->primitives[p], r);
+            if (t < rays->t[i]) rays->t[i] = t, rays->hit[i] = p;
+        }
+    }
+    zt_meshes_intersect(tracer->meshes, rays, all_rays, rays->count);
+}
+
+/* Bundles that are passed by, rays that a hull turns away: the bits are those of asking all.
+ * Narrow bundles and scattered ones, from near and far, among things of all sizes, with few
+ * meshes and with more than have hulls of their own. */
+static void test_passing_by(void **state) {
+    (void)state;
+    uint64_t seed = 7;
+    zt_mesh soup = make_soup(&seed);
+    zt_meshes *meshes;
+    assert_int_equal(zt_meshes_open(&meshes, &soup, 1, (zt_listener){0}), ZT_OK);
+    int hit_count = 0, mesh_hit_count = 0, miss_count = 0;
+    for (int round = 0; round < 400; round++) {
+        static test_scene s;
+        scene_begin(&s);
+        scene_material(&s, (vec3){1, 1, 1}, 0);
+        s.scene.meshes = &soup;
+        s.scene.mesh_count = 1;
+        int placed = round % 8 == 0 ? 40 : 1 + round % 5;
+        for (int i = 0; i < placed; i++) {
+            zt_object *object = scene_object(&s, ZT_SHAPE_MESH, 0);
+            object->mesh = 0;
+            double scale = exp(test_between(&seed, -1, 1));
+            quat turn = quat_axis_angle(test_direction(&seed), test_between(&seed, 0, 6));
+            object->placement = (zt_placement){{0, 0, 0}, turn, {scale, scale, -scale}};
+            /* So that the model's middle comes to somewhere near. */
+            xform place = xform_place((vec3){0, 0, 0}, turn, object->placement.scale);
+            object->placement.position = vec3_sub(vec3_scale(test_direction(&seed), 6),
+                                                  xform_point(&place, soup.origin));
+        }
+        for (int i = 0; i < 12; i++)
+            scene_sphere(&s, vec3_scale(test_direction(&seed), test_between(&seed, 1, 12)),
+                         exp(test_between(&seed, -3, 1)), 0);
+        scene_triangle(&s, vec3_scale(test_direction(&seed), 5),
+                       vec3_scale(test_direction(&seed), 5),
+                       vec3_scale(test_direction(&seed), 5), 0);
+        scene_plane(&s, test_direction(&seed), -9, 0);
+        s.scene.camera.position = vec3_scale(test_direction(&seed), round % 3 ? 1 : 30);
+        zt_arena arena = {0};
+        zt_tracer tracer;
+        assert_int_equal(zt_tracer_prepare(&tracer, &s.scene, meshes, &arena), ZT_OK);
+        for (int batch = 0; batch < 20; batch++) {
+            static zt_batch rays, wanted;
+            rays.count = 1 + (int)(test_random(&seed) * ZT_BATCH);
+            vec3 from = vec3_scale(test_direction(&seed), batch % 4 ? 0 : 8);
+            vec3 along = test_direction(&seed);
+            double spread = batch % 3 ? .03 : 2;
+            for (int i = 0; i < rays.count; i++) {
+                vec3 d =
+                    vec3_normalize(vec3_add(along, vec3_scale(test_direction(&seed), spread)));
+                if (batch % 7 == 0) d = (vec3){0, 0, i % 2 ? 1 : -1}; /* along an axis */
+                rays.ox[i] = (real)from.x, rays.oy[i] = (real)from.y, rays.oz[i] = (real)from.z;
+                rays.dx[i] = (real)d.x, rays.dy[i] = (real)d.y, rays.dz[i] = (real)d.z;
+            }
+            wanted = rays;
+            intersect_all(&wanted, &tracer);
+            ZT_ISA_NAME(zt_intersect)(&rays, &tracer);
+            for (int i = 0; i < rays.count; i++) {
+                assert_int_equal(rays.hit[i], wanted.hit[i]);
+                assert_true(rays.t[i] == wanted.t[i]);
+                miss_count += rays.hit[i] < 0;
+                hit_count += rays.hit[i] >= 0;
+                mesh_hit_count += rays.hit[i] >= 0 &&
+                                  tracer.primitives[rays.hit[i]].kind == ZT_PRIMITIVE_MESH;
+            }
+            /* As shadow rays, looking half as far, and as far as a little beyond. */
+            real share = batch % 2 ? .5f : 1.0001f;
+            for (int i = 0; i < rays.count; i++) {
+                rays.t[i] = wanted.hit[i] < 0 ? 5 : wanted.t[i] * share;
+                rays.hit[i] = -1;
+            }
+            ZT_ISA_NAME(zt_occlude)(&rays, &tracer);
+            for (int i = 0; i < rays.count; i++)
+                assert_int_equal(rays.hit[i] >= 0, wanted.hit[i] >= 0 && share > 1);
+        }
+        zt_arena_free(&arena);
+    }
+    printf("passing by: %d hits, %d of them on meshes, %d misses\n", hit_count, mesh_hit_count,
+           miss_count);
+    assert_true(mesh_hit_count > 10000 && miss_count > 10000);
+    zt_meshes_close(&meshes);
+}
+
 int main(void) {
     for (int i = 0; i < ZT_BATCH; i++) all_rays[i] = i;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sphere),   cmocka_unit_test(test_sphere_limb),
-        cmocka_unit_test(test_plane),    cmocka_unit_test(test_ellipsoid),
-        cmocka_unit_test(test_triangle), cmocka_unit_test(test_triangle_edges),
-        cmocka_unit_test(test_mesh),     cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_sphere),     cmocka_unit_test(test_sphere_limb),
+        cmocka_unit_test(test_plane),      cmocka_unit_test(test_ellipsoid),
+        cmocka_unit_test(test_triangle),   cmocka_unit_test(test_triangle_edges),
+        cmocka_unit_test(test_mesh),       cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_passing_by),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
