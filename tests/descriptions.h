@@ -20,7 +20,7 @@ static inline void write_bytes(const char *path, const char *bytes, size_t size)
 static inline zt_status read_told(told *t, zt_animation **animation, const char *text) {
     write_bytes("film.yaml", text, strlen(text));
     *t = (told){.file = "film.yaml"};
-    return zt_animation_read(animation, "film.yaml", told_to(t));
+    return zt_animation_read(animation, "film.yaml", NULL, 0, told_to(t));
 }
 
 /* The animation of a text without mistakes, of the caller to free. */

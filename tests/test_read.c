@@ -442,7 +442,8 @@ static void meshes(void **state) {
              "  - mesh: { file: a.ply, position: [1, 2, 3] }\n";
     write_bytes("deep/film.yaml", text, sizeof text - 1);
     zt_animation *animation;
-    assert_int_equal(zt_animation_read(&animation, "deep/film.yaml", (zt_listener){0}), ZT_OK);
+    assert_int_equal(zt_animation_read(&animation, "deep/film.yaml", NULL, 0, (zt_listener){0}),
+                     ZT_OK);
     const zt_scene *rest = &animation->rest;
     assert_int_equal(rest->mesh_count, 2);
     assert_int_equal(rest->objects[0].mesh, 0);

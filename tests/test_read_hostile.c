@@ -33,7 +33,7 @@ static const char good[] =
     "      material: clay\n"
     "      center:\n"
     "        curve: smooth\n"
-    "        keys: { 0 s: [-2, 1, 0], 500 ms: &here [0, 2.2, 0], 48: [2, 1, 0], 60: *here }\n"
+    "        keys: { 0 s: [-2, 1, 0], 500 ms: &here [0, 2.2, 0], 36: [2, 1, 0], 48: *here }\n"
     "  - triangle: { vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], material: { color: red } }\n"
     "  - group:\n"
     "      rotation: { keys: { 0: [0, 0, 0], 24: { axis: [0, 1, 0], angle: 90 } } }\n"
@@ -44,7 +44,7 @@ static zt_status read_bytes(told *t, const char *bytes, size_t size) {
     zt_animation *animation;
     write_bytes("film.yaml", bytes, size);
     *t = (told){.file = "film.yaml"};
-    zt_status status = zt_animation_read(&animation, "film.yaml", told_to(t));
+    zt_status status = zt_animation_read(&animation, "film.yaml", NULL, 0, told_to(t));
     assert_true(status == ZT_OK || status == ZT_EDESCRIPTION);
     assert_true((status == ZT_OK) == (animation != NULL));
     assert_true((status == ZT_OK) == (t->error_count == 0));
@@ -217,7 +217,8 @@ static void unreadable_files(void **state) {
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         t = (told){.file = paths[i]};
         zt_animation *animation;
-        assert_int_equal(zt_animation_read(&animation, paths[i], told_to(&t)), ZT_EFILE);
+        assert_int_equal(zt_animation_read(&animation, paths[i], NULL, 0, told_to(&t)),
+                         ZT_EFILE);
         assert_null(animation);
         assert_int_equal(t.error_count, 1);
         assert_int_equal(t.foreign_count, 0);
@@ -229,9 +230,10 @@ static void silent(void **state) {
     (void)state;
     zt_animation *animation;
     write_bytes("film.yaml", "a: b\n", 5);
-    assert_int_equal(zt_animation_read(&animation, "film.yaml", (zt_listener){0}),
+    assert_int_equal(zt_animation_read(&animation, "film.yaml", NULL, 0, (zt_listener){0}),
                      ZT_EDESCRIPTION);
-    assert_int_equal(zt_animation_read(&animation, "none.yaml", (zt_listener){0}), ZT_EFILE);
+    assert_int_equal(zt_animation_read(&animation, "none.yaml", NULL, 0, (zt_listener){0}),
+                     ZT_EFILE);
 }
 
 int main(void) {

@@ -40,7 +40,7 @@ static zt_animation *open_film(void) {
     assert_int_equal(write(file, film_text, sizeof film_text - 1), sizeof film_text - 1);
     close(file);
     zt_animation *animation;
-    zt_status status = zt_animation_read(&animation, path, (zt_listener){0});
+    zt_status status = zt_animation_read(&animation, path, NULL, 0, (zt_listener){0});
     unlink(path);
     assert_int_equal(status, ZT_OK);
     return animation;

@@ -39,7 +39,8 @@ static void told_as_expected(void **state) {
     static told t;
     t = (told){.file = path};
     zt_animation *animation = (zt_animation *)state; /* must become NULL */
-    assert_int_equal(zt_animation_read(&animation, path, told_to(&t)), ZT_EDESCRIPTION);
+    assert_int_equal(zt_animation_read(&animation, path, NULL, 0, told_to(&t)),
+                     ZT_EDESCRIPTION);
     assert_null(animation);
     assert_string_equal(t.lines, expected);
     assert_int_equal(t.foreign_count, 0);

@@ -35,10 +35,20 @@ typedef struct zt_contents {
     int track_count; /* properties that move */
 } zt_contents;
 
+/* What replaces something in a description: "lamp.intensity" by "40". The name is that of a
+ * thing, a dot, and one of its keys; things without a name of their own are called by kind and
+ * number ("sphere 2"), and "$big" is a variable. The value is YAML, checked as the text is. */
+typedef struct zt_override {
+    const char *name, *value;
+} zt_override;
+
 /* Reads the description at `path` with all that it refers to. All mistakes are told before
  * giving up. ZT_EDESCRIPTION for mistakes, ZT_EFILE when the file itself cannot be read. The
- * caller frees the animation. */
-zt_status zt_animation_read(zt_animation **animation, const char *path, zt_listener listener);
+ * caller frees the animation. `overrides` may be NULL where there are none; of two with the same
+ * name the last one counts. */
+zt_status zt_animation_read(zt_animation **animation, const char *path,
+                            const zt_override *overrides, int override_count,
+                            zt_listener listener);
 void zt_animation_free(zt_animation **animation);
 
 const zt_film *zt_animation_film(const zt_animation *animation);

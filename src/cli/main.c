@@ -188,7 +188,8 @@ int main(int argc, char **argv) {
     }
     report.quiet = options.quiet;
     zt_animation *animation = NULL;
-    zt_status status = zt_animation_read(&animation, options.file, zt_report_listener(&report));
+    zt_status status = zt_animation_read(&animation, options.file, options.sets,
+                                         options.set_count, zt_report_listener(&report));
     if (status == ZT_OK) status = run(&options, animation, &report);
     zt_animation_free(&animation);
     return exit_code(status, &report);

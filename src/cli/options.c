@@ -13,10 +13,11 @@ typedef struct arguments {
     const char *values[ZT_OPTION_COUNT]; /* NULL: not given; "" where it takes no value */
     char **words; /* command, file and more, moved to the begin of argv; NULL after the last */
     int word_count;
+    zt_options *options; /* takes each --set as it comes */
 } arguments;
 
 /* The option that an argument names, and what is attached to it ("=640x360"), or NULL. */
-static zt_option find_option(const char **value, const char *argument) {
+static zt_option find_option(char **value, char *argument) {
     *value = NULL;
     bool is_long = argument[1] == '-';
     size_t length = strcspn(argument, "=");
@@ -61,9 +62,25 @@ static void say_unknown_command(zt_report *report, const char *word) {
         zt_report_say(report, ZT_ERROR, "unknown command %s; zoetrope --help lists them", word);
 }
 
+static bool take_set(zt_options *options, char *text, zt_report *report) {
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text) {
+        zt_report_say(report, ZT_ERROR,
+                      "--set %s: must be a name and a value, such as lamp.intensity=40", text);
+        return false;
+    }
+    if (options->set_count == ZT_SETS_MAX) {
+        zt_report_say(report, ZT_ERROR, "more than %d times --set", ZT_SETS_MAX);
+        return false;
+    }
+    *equals = '\0';
+    options->sets[options->set_count++] = (zt_override){text, equals + 1};
+    return true;
+}
+
 /* Takes the option at argv[i] with its value; returns the index of the last one taken, or 0. */
 static int take_option(arguments *sorted, int i, char **argv, zt_report *report) {
-    const char *value;
+    char *value;
     zt_option option = find_option(&value, argv[i]);
     if (option == ZT_OPTION_COUNT) {
         say_unknown_option(report, argv[i]);
@@ -81,7 +98,8 @@ static int take_option(arguments *sorted, int i, char **argv, zt_report *report)
         return 0;
     }
     sorted->values[option] = row->example ? value : "";
-    return i;
+    bool good = option != ZT_OPTION_SET || take_set(sorted->options, value, report);
+    return good ? i : 0;
 }
 
 static bool sort_arguments(arguments *sorted, int argc, char **argv, zt_report *report) {
@@ -234,7 +252,7 @@ static zt_request understand(zt_options *options, const arguments *sorted, zt_re
 
 zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report) {
     *options = (zt_options){.command = ZT_COMMAND_COUNT, .all_frames = true};
-    arguments sorted = {0};
+    arguments sorted = {.options = options};
     if (!sort_arguments(&sorted, argc, argv, report)) return ZT_REQUEST_WRONG;
     return understand(options, &sorted, report);
 }

@@ -10,6 +10,8 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 
+enum { ZT_SETS_MAX = 256 };
+
 typedef struct zt_options {
     zt_command command;
     const char *file;              /* the description */
@@ -21,6 +23,8 @@ typedef struct zt_options {
     int64_t first, last;         /* 0 <= first <= last */
     zt_render_settings settings; /* zero where not given */
     bool quiet;
+    zt_override sets[ZT_SETS_MAX]; /* what --set replaces in the description */
+    int set_count;
 } zt_options;
 
 typedef enum zt_request {
@@ -31,7 +35,7 @@ typedef enum zt_request {
 
 /* Reads GNU-style arguments: options anywhere, "--size=4x4" as "--size 4x4", "-ofilm.mp4" as
  * "-o film.mp4", nothing but words after "--". `argv` ends with NULL; its words are moved to
- * its begin, its texts stay its own.
+ * its begin; its texts stay its own, and that of --set is cut at its "=".
  */
 zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report);
 

@@ -112,7 +112,8 @@ bool zt_read_color(double color[3], zt_mistakes *mistakes, const zt_node *node,
                    what);
         return false;
     }
-    if (node->kind == ZT_NODE_LIST) return zt_read_vector(color, mistakes, node, what, range);
+    if (node->kind == ZT_NODE_LIST)
+        return zt_read_numbers(color, 3, mistakes, node, what, range);
     if (zt_read_quantity(&grey, &unit, node)) {
         if (!zt_read_number(&grey, mistakes, node, what, range)) return false;
         color[0] = color[1] = color[2] = grey;

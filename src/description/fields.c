@@ -146,15 +146,16 @@ bool zt_read_angle(double *radians, zt_mistakes *mistakes, const zt_node *node,
 typedef bool number_reader(double *value, zt_mistakes *mistakes, const zt_node *node,
                            const char *what, zt_range range);
 
-static bool read_three(double value[3], zt_mistakes *mistakes, const zt_node *node,
-                       const char *what, zt_range range, const char *expected,
-                       number_reader *read) {
-    if (node->kind != ZT_NODE_LIST || node->count != 3) {
+static bool read_list(double *value, int count, zt_mistakes *mistakes, const zt_node *node,
+                      const char *what, zt_range range, const char *kind, number_reader *read) {
+    char expected[48];
+    snprintf(expected, sizeof expected, "a list of %d %s", count, kind);
+    if (node->kind != ZT_NODE_LIST || node->count != count) {
         zt_expected(mistakes, node, what, expected);
         return false;
     }
     bool good = true;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < count; i++) {
         const zt_node *item = node->items[i];
         double number;
         const char *unit;
@@ -170,16 +171,14 @@ static bool read_three(double value[3], zt_mistakes *mistakes, const zt_node *no
     return good;
 }
 
-bool zt_read_vector(double value[3], zt_mistakes *mistakes, const zt_node *node,
-                    const char *what, zt_range range) {
-    return read_three(value, mistakes, node, what, range, "a list of 3 numbers",
-                      zt_read_number);
+bool zt_read_numbers(double *value, int count, zt_mistakes *mistakes, const zt_node *node,
+                     const char *what, zt_range range) {
+    return read_list(value, count, mistakes, node, what, range, "numbers", zt_read_number);
 }
 
 bool zt_read_angles(double radians[3], zt_mistakes *mistakes, const zt_node *node,
                     const char *what, zt_range range) {
-    return read_three(radians, mistakes, node, what, range, "a list of 3 angles",
-                      zt_read_angle);
+    return read_list(radians, 3, mistakes, node, what, range, "angles", zt_read_angle);
 }
 
 /* ---- words ----------------------------------------------------------------------------------

@@ -3,6 +3,8 @@
 #ifndef ZT_DESCRIPTION_FIELDS_H
 #define ZT_DESCRIPTION_FIELDS_H
 
+#include <math.h>
+
 #include "description/mistakes.h"
 #include "description/node.h"
 
@@ -36,6 +38,8 @@ typedef struct zt_range {
     const char *unit; /* or NULL */
 } zt_range;
 
+static const zt_range zt_any_number = {-INFINITY, INFINITY, NULL};
+
 bool zt_read_number(double *value, zt_mistakes *mistakes, const zt_node *node, const char *what,
                     zt_range range);
 bool zt_read_integer(int64_t *value, zt_mistakes *mistakes, const zt_node *node,
@@ -49,9 +53,9 @@ bool zt_read_quantity(double *number, const char **unit, const zt_node *node);
 bool zt_read_angle(double *radians, zt_mistakes *mistakes, const zt_node *node,
                    const char *what, zt_range range);
 
-/* A list of three: numbers (of angles: zt_read_angle). */
-bool zt_read_vector(double value[3], zt_mistakes *mistakes, const zt_node *node,
-                    const char *what, zt_range range);
+/* A list of just so many numbers, or of three angles. */
+bool zt_read_numbers(double *value, int count, zt_mistakes *mistakes, const zt_node *node,
+                     const char *what, zt_range range);
 bool zt_read_angles(double radians[3], zt_mistakes *mistakes, const zt_node *node,
                     const char *what, zt_range range);
 

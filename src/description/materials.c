@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "description/motion.h"
+
 enum { NEAREST_TRIED_MAX = 1000 };
 
 static zt_status read_material(int32_t *index, zt_reading *reading, const zt_node *node,
@@ -12,6 +14,7 @@ static zt_status read_material(int32_t *index, zt_reading *reading, const zt_nod
     int name_count = zt_motion_names(names, ZT_OWNER_MATERIAL);
     zt_fields fields;
     *index = -1;
+    ZT_TRY(zt_override_in(&node, reading, name, names, name_count));
     if (!zt_fields_open(&fields, &reading->mistakes, node, zt_show(name).text, names,
                         name_count))
         return ZT_OK;
@@ -72,8 +75,10 @@ zt_status zt_materials_find(int32_t *index, zt_materials *materials, const zt_no
         return ZT_OK;
     }
     if (node->kind == ZT_NODE_MAPPING) {
-        char name[32];
-        snprintf(name, sizeof name, "material %d", (int)rest->material_count + 1);
+        char numbered[32];
+        snprintf(numbered, sizeof numbered, "material %d", (int)rest->material_count + 1);
+        const char *name = zt_arena_push_text(reading->temporary, numbered, strlen(numbered));
+        if (!name) return ZT_EMEMORY;
         return read_material(index, reading, node, name);
     }
     if (node->kind != ZT_NODE_TEXT || zt_node_empty(node)) {

@@ -2,7 +2,7 @@
 #ifndef ZT_DESCRIPTION_MATERIALS_H
 #define ZT_DESCRIPTION_MATERIALS_H
 
-#include "description/motion.h"
+#include "description/reading.h"
 
 typedef struct zt_material_name {
     const char *name;

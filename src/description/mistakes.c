@@ -6,31 +6,44 @@
 
 enum { SENTENCE_MAX = 1024, SHOWN_MAX = 48 };
 
-static bool told_before(const zt_mistakes *mistakes, zt_hash hash) {
-    for (int i = 0; i < mistakes->told_count; i++)
-        if (mistakes->told[i].high == hash.high && mistakes->told[i].low == hash.low)
+static bool told_before(const zt_sentences *sentences, zt_hash hash) {
+    for (int i = 0; i < sentences->count; i++)
+        if (sentences->told[i].high == hash.high && sentences->told[i].low == hash.low)
             return true;
     return false;
 }
 
-void zt_mistake(zt_mistakes *mistakes, const zt_place *place, const char *format, ...) {
+/* Tells a sentence, unless it was told about this place before or there are too many. */
+static void tell(zt_mistakes *mistakes, zt_sentences *sentences, zt_severity severity,
+                 const zt_place *place, const char *format, va_list arguments) {
     mistakes->told_last = false;
-    mistakes->count++;
-    if (zt_mistakes_full(mistakes)) {
-        mistakes->untold_count++;
+    if (sentences->count == ZT_MISTAKES_TOLD_MAX) {
+        sentences->untold_count++;
         return;
     }
     char text[SENTENCE_MAX], key[SENTENCE_MAX + 32];
-    va_list arguments;
-    va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
     int length = snprintf(key, sizeof key, "%d:%d:%s", place->line, place->column, text);
     zt_hash hash = zt_hash_bytes(key, (size_t)length);
-    if (told_before(mistakes, hash)) return;
-    mistakes->told[mistakes->told_count++] = hash;
+    if (told_before(sentences, hash)) return;
+    sentences->told[sentences->count++] = hash;
     mistakes->told_last = true;
-    zt_tell_at(mistakes->listener, ZT_ERROR, place, "%s", text);
+    zt_tell_at(mistakes->listener, severity, place, "%s", text);
+}
+
+void zt_mistake(zt_mistakes *mistakes, const zt_place *place, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    mistakes->count++;
+    tell(mistakes, &mistakes->mistakes, ZT_ERROR, place, format, arguments);
+    va_end(arguments);
+}
+
+void zt_doubt(zt_mistakes *mistakes, const zt_place *place, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    tell(mistakes, &mistakes->doubts, ZT_WARNING, place, format, arguments);
+    va_end(arguments);
 }
 
 void zt_mistake_note(zt_mistakes *mistakes, const zt_place *place, const char *format, ...) {
@@ -44,13 +57,17 @@ void zt_mistake_note(zt_mistakes *mistakes, const zt_place *place, const char *f
 }
 
 bool zt_mistakes_full(const zt_mistakes *mistakes) {
-    return mistakes->told_count >= ZT_MISTAKES_TOLD_MAX;
+    return mistakes->mistakes.count == ZT_MISTAKES_TOLD_MAX;
 }
 
 zt_status zt_mistakes_close(const zt_mistakes *mistakes, const char *path) {
-    if (mistakes->untold_count > 0)
-        zt_tell_at(mistakes->listener, ZT_NOTE, &(zt_place){.file = path},
-                   "mistakes that are not shown: %lld", (long long)mistakes->untold_count);
+    zt_place place = {.file = path};
+    if (mistakes->mistakes.untold_count > 0)
+        zt_tell_at(mistakes->listener, ZT_NOTE, &place, "mistakes that are not shown: %lld",
+                   (long long)mistakes->mistakes.untold_count);
+    if (mistakes->doubts.untold_count > 0)
+        zt_tell_at(mistakes->listener, ZT_NOTE, &place, "warnings that are not shown: %lld",
+                   (long long)mistakes->doubts.untold_count);
     return mistakes->count > 0 ? ZT_EDESCRIPTION : ZT_OK;
 }
 

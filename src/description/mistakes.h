@@ -12,13 +12,19 @@
 
 enum { ZT_MISTAKES_TOLD_MAX = 100 };
 
+/* The sentences of one kind that were told. */
+typedef struct zt_sentences {
+    int64_t untold_count; /* how many more were only counted */
+    int count;            /* in `told` */
+    zt_hash told[ZT_MISTAKES_TOLD_MAX];
+} zt_sentences;
+
 /* Zeroed but for the listener is ready. */
 typedef struct zt_mistakes {
     zt_listener listener;
-    int64_t count, untold_count; /* how often something was wrong; and was only counted */
-    int told_count;              /* sentences in `told` */
-    bool told_last;              /* whether the last one was told, and so its notes */
-    zt_hash told[ZT_MISTAKES_TOLD_MAX];
+    int64_t count;  /* how often something was wrong */
+    bool told_last; /* whether the last one was told, and so its notes */
+    zt_sentences mistakes, doubts;
 } zt_mistakes;
 
 /* Tells a mistake; after ZT_MISTAKES_TOLD_MAX of them they are only counted. The same sentence
@@ -26,9 +32,13 @@ typedef struct zt_mistakes {
 __attribute__((format(printf, 3, 4))) void
 zt_mistake(zt_mistakes *mistakes, const zt_place *place, const char *format, ...);
 
-/* A further place that has to do with the last mistake; told only if that one was. */
+/* A further place that has to do with the last mistake or doubt; told only if that one was. */
 __attribute__((format(printf, 3, 4))) void
 zt_mistake_note(zt_mistakes *mistakes, const zt_place *place, const char *format, ...);
+
+/* Warns of what is legal and probably not meant, in the same way. Such notes follow as well. */
+__attribute__((format(printf, 3, 4))) void
+zt_doubt(zt_mistakes *mistakes, const zt_place *place, const char *format, ...);
 
 /* Whether no further mistake will be told: then it is not worth much work to find its words. */
 bool zt_mistakes_full(const zt_mistakes *mistakes);

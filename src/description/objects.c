@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "description/materials.h"
+#include "description/motion.h"
 #include "description/ply.h"
 
 /* A model, read once however many objects show it. */
@@ -77,11 +78,13 @@ static bool read_kind(zt_owner *owner, zt_mistakes *mistakes, const zt_node *nod
 }
 
 /* What its tracks are called: by its name, or by its kind and its number among that. */
-static zt_status read_name(item *it, things *t) {
+static zt_status read_name(item *it, things *t, const zt_node *mapping) {
     char numbered[32];
     snprintf(numbered, sizeof numbered, "%s %d", zt_owner_name(it->owner),
              t->counts[it->owner]);
-    const zt_node *node = zt_field(&it->fields, "name");
+    const zt_node *node = mapping->kind == ZT_NODE_MAPPING
+                              ? zt_field(&(zt_fields){.mapping = mapping}, "name")
+                              : NULL;
     it->name = node ? zt_read_text(&t->reading->mistakes, node, "name") : NULL;
     if (it->name)
         t->names[t->name_count++] = node;
@@ -94,14 +97,17 @@ static zt_status read_name(item *it, things *t) {
  * may have besides its properties and "name" end with a NULL. */
 static zt_status open_item(item *it, bool *good, things *t, const zt_node *node,
                            const char *const *further) {
+    const zt_node *mapping = zt_node_value(node, 0);
     it->word = zt_node_key(node, 0);
     int name_count = zt_motion_names(it->names, it->owner);
-    it->names[name_count++] = "name";
     while (*further) it->names[name_count++] = *further++;
     t->counts[it->owner]++;
-    *good = zt_fields_open(&it->fields, &t->reading->mistakes, zt_node_value(node, 0),
-                           it->word->text, it->names, name_count);
-    return *good ? read_name(it, t) : ZT_OK;
+    ZT_TRY(read_name(it, t, mapping));
+    ZT_TRY(zt_override_in(&mapping, t->reading, it->name, it->names, name_count));
+    it->names[name_count++] = "name"; /* which cannot be overridden: it is what is named */
+    *good = zt_fields_open(&it->fields, &t->reading->mistakes, mapping, it->word->text,
+                           it->names, name_count);
+    return ZT_OK;
 }
 
 /* The items of a list, or none where there is no list. */

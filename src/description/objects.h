@@ -2,7 +2,7 @@
 #ifndef ZT_DESCRIPTION_OBJECTS_H
 #define ZT_DESCRIPTION_OBJECTS_H
 
-#include "description/motion.h"
+#include "description/reading.h"
 
 /* Reads what the description says below these words, each NULL where it is not there, into the
  * scene at rest. Names of models are relative to `directory`, which is "" or ends in a slash.

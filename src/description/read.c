@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "description/curves.h"
 #include "description/document.h"
+#include "description/motion.h"
 #include "description/objects.h"
 #include "description/times.h"
 
@@ -38,13 +40,17 @@ static void read_size(zt_film *film, zt_mistakes *mistakes, const zt_node *node)
  */
 static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
     zt_moment end;
-    if (!zt_read_moment(&end, mistakes, node, "duration")) return;
-    double frames = end.is_frame
-                        ? (double)end.frame
-                        : end.seconds * (double)film->rate.num / (double)film->rate.den;
+    if (!zt_read_moment(&end, mistakes, node, "duration", film->rate)) return;
+    if (end.unit == ZT_TIME_PERCENT) {
+        zt_mistake(mistakes, &node->place, "\"duration\" cannot be a share of itself");
+        return;
+    }
+    bool whole = end.unit == ZT_TIME_FRAMES;
+    double frames = whole ? (double)end.frame
+                          : end.number * (double)film->rate.num / (double)film->rate.den;
     double nearest = round(frames);
     frames = fabs(frames - nearest) <= 1e-6 ? nearest : ceil(frames);
-    if (end.is_frame ? end.frame < 1 : end.seconds <= 0)
+    if (whole ? end.frame < 1 : end.number <= 0)
         zt_mistake(mistakes, &node->place, "\"duration\" is %s; a film has at least one frame",
                    zt_show(node->text).text);
     else if (frames > FRAME_COUNT_MAX)
@@ -55,7 +61,7 @@ static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *n
         film->frame_count = frames < 1 ? 1 : (int64_t)frames;
 }
 
-static void read_film(zt_reading *reading, const zt_node *node) {
+static zt_status read_film(zt_reading *reading, const zt_node *node) {
     static const char *const names[] = {"size",    "rate",        "duration", "view",
                                         "shading", "reflections", "samples"};
     static const char *const views[] = {[ZT_VIEW_RAW] = "raw", [ZT_VIEW_SRGB] = "srgb"};
@@ -63,7 +69,8 @@ static void read_film(zt_reading *reading, const zt_node *node) {
     zt_mistakes *mistakes = &reading->mistakes;
     zt_film *film = &reading->animation->film;
     zt_fields fields;
-    if (!zt_fields_open(&fields, mistakes, node, "film", names, COUNT(names))) return;
+    ZT_TRY(zt_override_in(&node, reading, "film", names, COUNT(names)));
+    if (!zt_fields_open(&fields, mistakes, node, "film", names, COUNT(names))) return ZT_OK;
     const zt_node *size = zt_field(&fields, "size"), *rate = zt_field(&fields, "rate"),
                   *duration = zt_field_required(&fields, mistakes, "duration", &node->place),
                   *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
@@ -83,6 +90,7 @@ static void read_film(zt_reading *reading, const zt_node *node) {
         reading->animation->rest.reflection_depth = (int32_t)number;
     if (samples && zt_read_integer(&number, mistakes, samples, "samples", 1, SAMPLES_MAX))
         film->samples = (int)number;
+    return ZT_OK;
 }
 
 /* ---- camera ---------------------------------------------------------------------------------
@@ -92,6 +100,7 @@ static zt_status read_camera(zt_reading *reading, const zt_node *node) {
     const char *names[ZT_FIELD_NAMES_MAX];
     int name_count = zt_motion_names(names, ZT_OWNER_CAMERA);
     zt_fields fields;
+    ZT_TRY(zt_override_in(&node, reading, "camera", names, name_count));
     if (!zt_fields_open(&fields, &reading->mistakes, node, "camera", names, name_count))
         return ZT_OK;
     ZT_TRY(zt_motion_read(reading, &fields, ZT_OWNER_CAMERA, 0, "camera", &node->place));
@@ -133,41 +142,66 @@ static void warn_of_nothing(const zt_reading *reading, const zt_node *root) {
                    "there are no lights: the film will be black");
 }
 
+/* The names that the parts of a description share. */
+static zt_status read_names(zt_reading *reading, const zt_fields *fields) {
+    ZT_TRY(zt_names_open(&reading->timings, reading, zt_field(fields, "timings"), "timings",
+                         "a mapping of names to lists of times"));
+    ZT_TRY(zt_names_open(&reading->curves, reading, zt_field(fields, "curves"), "curves",
+                         "a mapping of names to keys"));
+    zt_curves_check(reading);
+    return ZT_OK;
+}
+
 static zt_status read_root(zt_reading *reading, const zt_node *root, const char *directory) {
-    static const char *const names[] = {"zoetrope",  "film",   "camera",
-                                        "materials", "lights", "objects"};
+    static const char *const names[] = {"zoetrope", "film",    "camera", "materials", "lights",
+                                        "objects",  "timings", "curves", "variables"};
     zt_mistakes *mistakes = &reading->mistakes;
     zt_fields fields;
-    if (is_other_version(mistakes, root) ||
-        !zt_fields_open(&fields, mistakes, root, "description", names, COUNT(names)))
+    if (is_other_version(mistakes, root)) return ZT_OK;
+    ZT_TRY(zt_variables_apply(reading, root));
+    if (!zt_fields_open(&fields, mistakes, root, "description", names, COUNT(names)))
         return ZT_OK;
     if (!zt_field_required(&fields, mistakes, "zoetrope", &root->place))
         zt_mistake_note(mistakes, &root->place, "a description begins with \"zoetrope: %d\"",
                         LANGUAGE_VERSION);
     const zt_node *film = zt_field_required(&fields, mistakes, "film", &root->place);
     const zt_node *camera = zt_field_required(&fields, mistakes, "camera", &root->place);
-    if (film) read_film(reading, film);
+    if (film) ZT_TRY(read_film(reading, film));
+    ZT_TRY(read_names(reading, &fields));
     if (camera) ZT_TRY(read_camera(reading, camera));
     ZT_TRY(zt_objects_read(reading, directory, zt_field(&fields, "materials"),
                            zt_field(&fields, "lights"), zt_field(&fields, "objects")));
     ZT_TRY(zt_motion_close(reading));
+    zt_overrides_close(reading);
     if (mistakes->count == 0) warn_of_nothing(reading, root);
     return ZT_OK;
 }
 
-static zt_status read_all(zt_reading *reading, zt_document *document, const char *path) {
-    ZT_TRY(zt_document_read(document, path, &reading->mistakes));
-    reading->temporary = &document->arena;
+static zt_status read_all(zt_reading *reading, const char *path, const zt_override *overrides,
+                          int override_count) {
+    zt_arena *texts = &reading->animation->arena;
+    zt_mistakes *mistakes = &reading->mistakes;
+    zt_source source;
+    const zt_node *root;
+    ZT_TRY(zt_overrides_open(reading, overrides, override_count));
+    ZT_TRY(zt_source_read(&source, texts, path, mistakes));
+    ZT_TRY(zt_document_read(&root, reading->temporary, &source, mistakes));
+    if (!root) {
+        zt_mistake(mistakes, &(zt_place){.file = source.file}, "the description is empty");
+        return ZT_OK;
+    }
     const char *slash = strrchr(path, '/');
     const char *directory =
-        zt_arena_push_text(&document->arena, path, slash ? (size_t)(slash + 1 - path) : 0);
+        zt_arena_push_text(reading->temporary, path, slash ? (size_t)(slash + 1 - path) : 0);
     if (!directory) return ZT_EMEMORY;
-    return read_root(reading, document->root, directory);
+    return read_root(reading, root, directory);
 }
 
-zt_status zt_animation_read(zt_animation **out, const char *path, zt_listener listener) {
+zt_status zt_animation_read(zt_animation **out, const char *path, const zt_override *overrides,
+                            int override_count, zt_listener listener) {
     *out = NULL;
-    zt_reading reading = {.mistakes.listener = listener};
+    zt_arena temporary = {0};
+    zt_reading reading = {.mistakes.listener = listener, .temporary = &temporary};
     zt_animation *animation = reading.animation = calloc(1, sizeof *animation);
     if (!animation) return ZT_EMEMORY;
     animation->film = (zt_film){.width = 1280,
@@ -177,9 +211,8 @@ zt_status zt_animation_read(zt_animation **out, const char *path, zt_listener li
                                 .view = ZT_VIEW_SRGB,
                                 .samples = 1};
     animation->rest.reflection_depth = 4;
-    zt_document document;
-    zt_status status = read_all(&reading, &document, path);
-    zt_document_free(&document);
+    zt_status status = read_all(&reading, path, overrides, override_count);
+    zt_arena_free(&temporary);
     if (status == ZT_OK || status == ZT_EDESCRIPTION) {
         zt_status mistakes = zt_mistakes_close(&reading.mistakes, path);
         if (status == ZT_OK) status = mistakes;

@@ -33,7 +33,7 @@ static zt_animation *open_film(const char *name) {
     char path[1024];
     snprintf(path, sizeof path, "%s/animations/%s.yaml", ZT_BENCH_SOURCE_DIR, name);
     zt_animation *animation;
-    must(zt_animation_read(&animation, path, (zt_listener){tell, NULL}), path);
+    must(zt_animation_read(&animation, path, NULL, 0, (zt_listener){tell, NULL}), path);
     return animation;
 }
 
