@@ -77,16 +77,23 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
     scene->lights = copy(arena, rest->lights, sizeof *rest->lights, rest->light_count);
     scene->objects = copy(arena, rest->objects, sizeof *rest->objects, rest->object_count);
     if (!scene->materials || !scene->lights || !scene->objects) return ZT_EMEMORY;
+    zt_status result = ZT_OK;
     for (int32_t i = 0; i < animation->track_count; i++) {
         const zt_track *track = &animation->tracks[animation->order ? animation->order[i] : i];
         double value[ZT_VALUE_WIDTH_MAX];
         bool has_value;
-        ZT_TRY(eval_track(value, &has_value, track, scene, animation, time_s, listener));
+        zt_status status =
+            eval_track(value, &has_value, track, scene, animation, time_s, listener);
+        if (status == ZT_EDESCRIPTION) { /* there may be others to tell */
+            result = status;
+            continue;
+        }
+        ZT_TRY(status);
         if (!has_value) continue;
         keep_in_range(value, track->property);
         zt_property_set(track->property, scene, track->index, value);
     }
-    return ZT_OK;
+    return result;
 }
 
 void zt_animation_free(zt_animation **animation) {
