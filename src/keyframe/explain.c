@@ -102,7 +102,8 @@ static zt_status change(double *way, const zt_subject *subject, double from_s, d
 /* Whether a time is on the same way between two keys as another. */
 static bool same_way(const zt_curve *curve, double a_s, double b_s) {
     zt_curve_spot a = zt_curve_find(curve, a_s), b = zt_curve_find(curve, b_s);
-    return a.key == b.key && a.round == b.round;
+    return a.key == b.key && a.round == b.round &&
+           (a_s < curve->times[0]) == (b_s < curve->times[0]);
 }
 
 static double way_duration_s(const zt_curve *curve, double time_s) {
