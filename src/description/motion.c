@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "description/constraints.h"
 #include "description/curves.h"
 #include "description/rotations.h"
 #include "description/values.h"
@@ -43,6 +44,9 @@ static zt_status read_property(zt_reading *reading, const zt_node *node,
                                const zt_property *property, int32_t index, const char *name) {
     zt_scene *rest = &reading->animation->rest;
     double value[ZT_VALUE_WIDTH_MAX];
+    bool taken;
+    ZT_TRY(zt_constraint_read(&taken, reading, node, property, index, name));
+    if (taken) return ZT_OK;
     if (node->kind != ZT_NODE_MAPPING || is_constant_mapping(node, property)) {
         if (zt_read_value(value, &reading->mistakes, node, property))
             zt_property_set(property, rest, index, value);
@@ -67,6 +71,7 @@ int zt_motion_names(const char *names[ZT_FIELD_NAMES_MAX], zt_owner owner) {
 zt_status zt_motion_read(zt_reading *reading, const zt_fields *fields, zt_owner owner,
                          int32_t index, const char *name, const zt_place *place) {
     zt_property_rest(&reading->animation->rest, owner, index);
+    ZT_TRY(zt_things_add(reading, owner, index, name));
     for (int i = 0; i < zt_property_count; i++) {
         const zt_property *property = &zt_properties[i];
         if (property->owner != owner) continue;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "description/constraints.h"
 #include "description/curves.h"
 #include "description/document.h"
 #include "description/motion.h"
@@ -173,6 +174,7 @@ static zt_status read_root(zt_reading *reading, const zt_node *root, const char 
                            zt_field(&fields, "lights"), zt_field(&fields, "objects")));
     ZT_TRY(zt_motion_close(reading));
     zt_overrides_close(reading);
+    ZT_TRY(zt_constraints_close(reading));
     if (mistakes->count == 0) warn_of_nothing(reading, root);
     return ZT_OK;
 }

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "description/fields.h"
 #include "description/overrides.h"
+#include "description/things.h"
 #include "description/ways.h"
 #include "keyframe/animation.h"
 
@@ -29,8 +30,10 @@ typedef struct zt_reading {
     zt_names curves;         /* to mappings with keys */
     zt_overrides overrides;
     zt_eases eases;
+    zt_things things;
     zt_reference oriented; /* the rotation that the last path with "orient" turns */
     struct zt_track_link *first_track, *last_track;
+    struct zt_pending *first_pending, *last_pending; /* constraints whose names are not known */
 } zt_reading;
 
 /* `mapping` may be NULL or empty; tells when it is something else. ZT_EMEMORY. */
