@@ -70,7 +70,10 @@ static int decoded_frame_count(const char *path) {
  * seen there, and returns the exit code and what the terminal showed. */
 static int interrupt(char shown[TEXT_MAX], const char *arguments, int signal_number) {
     int terminal, its_end;
-    assert_int_equal(openpty(&terminal, &its_end, NULL, NULL, NULL), 0);
+    if (openpty(&terminal, &its_end, NULL, NULL, NULL) != 0) {
+        print_message("skipped: there are no pseudo-terminals here\n");
+        skip();
+    }
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, its_end, 2);
