@@ -16,7 +16,8 @@ extern "C" {
 /* Numbers that a value has at most. */
 enum { ZT_SUBJECT_CHANNELS_MAX = 9 };
 
-/* A property of one thing. Its texts are the animation's, which must outlive it. */
+/* A property of one thing. Its texts are the animation's, which must outlive it; only the name
+ * of what does not move is the text that zt_subject_find was given. */
 typedef struct zt_subject {
     const char *name;            /* "ball.center" */
     const char *meaning;         /* "the middle" */

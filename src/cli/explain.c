@@ -32,12 +32,17 @@ static void print_moment(const zt_film *film, double time_s) {
     printf("frame %.*f, %.6g s", frame == rint(frame) ? 0 : 2, frame, time_s);
 }
 
-static void print_value(const zt_subject *subject, const zt_explanation *e) {
-    print_channels(subject->channels, subject->channel_count);
-    print_row("value", e->value, subject->channel_count);
-    zt_subject_words words = zt_subject_in_words(subject, e->value);
+/* The numbers of a value, their unit, and what they mean. */
+static void print_numbers(const char *label, const zt_subject *subject, const double *value) {
+    zt_subject_words words = zt_subject_in_words(subject, value);
+    print_row(label, value, subject->channel_count);
     if (*subject->unit) printf(" %s", subject->unit);
     if (*words.text) printf("  = %s", words.text);
+}
+
+static void print_value(const zt_subject *subject, const zt_explanation *e) {
+    print_channels(subject->channels, subject->channel_count);
+    print_numbers("value", subject, e->value);
     putchar('\n');
     if (e->cut)
         printf("%-*s it is rendered as if it were within %g and %g\n", LABEL_WIDTH, "",
@@ -56,7 +61,7 @@ static void print_key(const zt_subject *subject, int index) {
     char label[24];
     zt_subject_key key = zt_subject_key_at(subject, index);
     snprintf(label, sizeof label, "key %d", index + 1);
-    print_row(label, key.value, subject->channel_count);
+    print_numbers(label, subject, key.value);
     fputs("  at ", stdout);
     print_moment(zt_animation_film(subject->film), key.time_s);
     print_place(key.place);
@@ -115,10 +120,12 @@ zt_status zt_explain(const zt_animation *animation, const char *question, zt_rep
     zt_explanation explanation;
     double time_s;
     zt_status status = zt_subject_find(&subject, animation, name, listener);
-    free(name);
     if (status == ZT_OK) status = zt_subject_time(&time_s, animation, at + 1, listener);
     if (status == ZT_OK) status = zt_subject_explain(&explanation, &subject, time_s, listener);
-    if (status != ZT_OK) return status;
-    print(&subject, &explanation);
-    return zt_report_finish(report);
+    if (status == ZT_OK) {
+        print(&subject, &explanation);
+        status = zt_report_finish(report);
+    }
+    free(name);
+    return status;
 }

@@ -102,8 +102,17 @@ static double y_of(const panel *p, double value) {
 /* ---- axes ----------------------------------------------------------------------------------
  */
 
-/* The range of the values, a little wider; of what stands still, some range around it. */
+/* The range of the values and of the keys, a little wider; of what stands still, some range
+ * around it. */
 static void choose_range(panel *p) {
+    for (int k = 0; k < p->subject->key_count; k++) {
+        zt_subject_key key = zt_subject_key_at(p->subject, k);
+        if (key.time_s < p->first_s || key.time_s > p->last_s) continue;
+        for (int c = 0; c < p->subject->channel_count; c++) {
+            p->trace.low = fmin(p->trace.low, key.value[c]);
+            p->trace.high = fmax(p->trace.high, key.value[c]);
+        }
+    }
     double half = p->trace.high / 2 - p->trace.low / 2;
     double size = fmax(fabs(p->trace.low), fabs(p->trace.high));
     double air = half > 1e-9 * size ? 0.14 * half : size > 0 ? 0.25 * size : 1;

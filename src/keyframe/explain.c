@@ -116,7 +116,7 @@ static double way_duration_s(const zt_curve *curve, double time_s) {
 static zt_status difference(zt_explanation *e, const zt_subject *subject,
                             zt_listener listener) {
     const zt_curve *curve = curve_of(subject);
-    double way_s = curve ? way_duration_s(curve, e->time_s) : 1;
+    double way_s = curve ? way_duration_s(curve, e->time_s) : 0.1;
     double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
     double one[ZT_SUBJECT_CHANNELS_MAX], two[ZT_SUBJECT_CHANNELS_MAX];
     bool ahead = !curve || same_way(curve, t, t + 2 * h);
