@@ -1,6 +1,7 @@
 #include "tracer/sampler.h"
 
 #include "base/random.h"
+#include "tracer/isa.h"
 
 static uint32_t reverse_bits(uint32_t x) {
     x = __builtin_bswap32(x);
@@ -21,18 +22,22 @@ static uint32_t scramble(uint32_t x, uint32_t seed) {
     return reverse_bits(x);
 }
 
-/* Sobol's second dimension: the generator matrix is Pascal's triangle modulo 2. */
+/* Sobol's second dimension: its generator matrix is Pascal's triangle modulo 2, the fifth
+ * Kronecker power of (1 1; 0 1), and so five exchanges between halves, as in a fast Fourier
+ * transform. */
 static uint32_t sobol_second(uint32_t index) {
-    uint32_t result = 0, column = 0x80000000u;
-    for (; index; index >>= 1, column ^= column >> 1)
-        if (index & 1) result ^= column;
-    return result;
+    uint32_t y = reverse_bits(index);
+    y ^= (y & 0x55555555u) << 1;
+    y ^= (y & 0x33333333u) << 2;
+    y ^= (y & 0x0f0f0f0fu) << 4;
+    y ^= (y & 0x00ff00ffu) << 8;
+    return y ^ y << 16;
 }
 
 static float unit_interval(uint32_t bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
 /* The place of a sample within its pixel, in [0, 1)^2. */
-static void sample_pixel(float *u, float *v, int32_t column, int32_t row, int sample) {
+static inline void sample_pixel(float *u, float *v, int32_t column, int32_t row, int sample) {
     uint64_t key = zt_random_key(zt_random_key(0, (uint64_t)column), (uint64_t)row);
     uint64_t other = zt_random_key(key, 0);
     uint32_t index = scramble((uint32_t)sample, (uint32_t)key);
@@ -40,8 +45,9 @@ static void sample_pixel(float *u, float *v, int32_t column, int32_t row, int sa
     *v = unit_interval(scramble(sobol_second(index), (uint32_t)other));
 }
 
-void zt_sample_pixels(float *restrict x, float *restrict y, const int32_t *restrict column,
-                      const int32_t *restrict row, int count, int sample, int sample_count) {
+ZT_CLONES void zt_sample_pixels(float *restrict x, float *restrict y,
+                                const int32_t *restrict column, const int32_t *restrict row,
+                                int count, int sample, int sample_count) {
     for (int i = 0; i < count; i++) {
         x[i] = (float)column[i] + 0.5f;
         y[i] = (float)row[i] + 0.5f;
