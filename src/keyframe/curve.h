@@ -21,8 +21,7 @@ typedef enum zt_curve_kind {
     ZT_CURVE_BEZIER,      /* handles in time and value, as F-curves have */
     ZT_CURVE_HERMITE,     /* tangents, as CUBICSPLINE of glTF 2.0 */
     ZT_CURVE_TCB,         /* Kochanek-Bartels */
-    ZT_CURVE_KIND_COUNT,
-    ZT_CURVE_COUNT = ZT_CURVE_SMOOTH + 1 /* those that zt_curve_make takes */
+    ZT_CURVE_KIND_COUNT
 } zt_curve_kind;
 
 /* "hold", "linear", "smooth", "catmull-rom", "bezier", "hermite", "tcb". */
@@ -112,11 +111,6 @@ typedef struct zt_curve {
  * there is no key, where times do not rise, where a number is not finite, or where the space
  * does not suit the kind of value. */
 zt_status zt_curve_from_keys(zt_curve *curve, zt_arena *arena, const zt_curve_spec *spec);
-
-/* The same for keys that are all of one kind, one of the first three. */
-zt_status zt_curve_make(zt_curve *curve, zt_arena *arena, zt_curve_kind kind,
-                        zt_value_kind value_kind, int32_t key_count, const double *times,
-                        const double *values);
 
 /* "smooth", "spring", "eased"; "mixed" where ways differ. */
 const char *zt_curve_label(const zt_curve *curve);

@@ -214,19 +214,3 @@ zt_status zt_curve_from_keys(zt_curve *curve, zt_arena *arena, const zt_curve_sp
     ZT_TRY(zt_curve_make_controls(curve, arena, spec->keys));
     return make_end_speeds(curve, arena);
 }
-
-zt_status zt_curve_make(zt_curve *curve, zt_arena *arena, zt_curve_kind kind,
-                        zt_value_kind value_kind, int32_t key_count, const double *times,
-                        const double *values) {
-    zt_arena temporary = {0};
-    zt_key *keys = key_count > 0 ? ZT_PUSH(&temporary, zt_key, (size_t)key_count) : NULL;
-    if (key_count > 0 && !keys) return ZT_EMEMORY;
-    int32_t width = zt_value_width(value_kind);
-    for (int32_t k = 0; k < key_count; k++)
-        keys[k] =
-            (zt_key){.time_s = times[k], .value = values + (int64_t)k * width, .kind = kind};
-    zt_curve_spec spec = {.value_kind = value_kind, .key_count = key_count, .keys = keys};
-    zt_status status = zt_curve_from_keys(curve, arena, &spec);
-    zt_arena_free(&temporary);
-    return status;
-}
