@@ -115,8 +115,9 @@ bool zt_orbit_eval(double *value, const zt_orbit *orbit, zt_reference driven,
                    const zt_scene *scene, double time_s) {
     vec3 center, a = orbit->axis;
     if (!place_of(&center, &orbit->around, driven, scene)) return false;
-    vec3 x = {1, 0, 0}, right = vec3_sub(x, vec3_scale(a, a.x));
-    if (vec3_max_abs(right) < 1e-6) right = vec3_sub((vec3){0, 1, 0}, vec3_scale(a, a.y));
+    vec3 right = {a.y * a.y + a.z * a.z, -a.x * a.y, -a.x * a.z}; /* x, less its part along a */
+    if (vec3_max_abs(right) < 1e-6)                               /* y, in the same way */
+        right = (vec3){-a.y * a.x, a.x * a.x + a.z * a.z, -a.y * a.z};
     right = vec3_normalize(right);
     double c, s;
     /* Whole rounds go first, and exactly. */
