@@ -16,6 +16,15 @@ static inline void write_bytes(const char *path, const char *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
+/* A model of one triangle. */
+static inline void write_model(const char *path) {
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                              "property float y\nproperty float z\nelement face 1\n"
+                              "property list uchar int vertex_indices\nend_header\n"
+                              "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    write_bytes(path, ply, sizeof ply - 1);
+}
+
 /* Reads a text as a description; what was told is in `t`. */
 static inline zt_status read_told(told *t, zt_animation **animation, const char *text) {
     write_bytes("film.yaml", text, strlen(text));

@@ -74,14 +74,6 @@ static void write_owner(char *text, size_t size, const zt_property *property,
     snprintf(text + length, size - (size_t)length, "%s%s%s", place, properties, hole + 2);
 }
 
-static void write_model(const char *path) {
-    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
-                              "property float y\nproperty float z\nelement face 1\n"
-                              "property list uchar int vertex_indices\nend_header\n"
-                              "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    write_bytes(path, ply, sizeof ply - 1);
-}
-
 /* Each property of the table, as a constant, is where the table says in the scene at rest. */
 static void every_property_constant(void **state) {
     (void)state;

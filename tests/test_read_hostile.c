@@ -19,25 +19,45 @@ static const char good[] =
     "film: { size: [64, 36], rate: 24, duration: 2 s, view: raw, samples: 2 } # a comment\n"
     "camera: { position: [0, 1.5, 6], look_at: [0, 1, 0], fov: { keys: { 0: 40 deg, 9: 0.7 rad "
     "} } }\n"
+    "variables: { big: 1.5, left: [-1, $big, 0], start: 0 s }\n"
+    "timings: { beat: [0 s, 25 %, 00:00:01:12] }\n"
+    "curves: { hop: { after: loop, keys: { $start: 1, 1 s: { value: 2, curve: steps(3) } } } "
+    "}\n"
     "materials:\n"
     "  wall: &wall { color: [0.8, 0.8, 0.75], reflectivity: 0.3 }\n"
     "  clay: { <<: *wall, color: \"#c8553d\" }\n"
     "lights:\n"
-    "  - ambient: { color: white, intensity: 0.2 }\n"
-    "  - point: { name: \"l\\u00e4mp\", position: [2, 4, 2], shadows: true }\n"
+    "  - ambient: { color: { in: oklab, keys: { 0: red, 9: white } }, intensity: 0.2 }\n"
+    "  - point: { name: \"l\\u00e4mp\", position: [2, 4, 2], shadows: true,\n"
+    "             intensity: { at: beat, values: [1, 2, 3], curve: \"cubic-bezier(0, 1, 1, "
+    "0)\" "
+    "} }\n"
     "objects:\n"
     "  - plane: { normal: [0, 1, 0], material: wall }\n"
     "  - sphere:\n"
     "      name: ball\n"
-    "      radius: 1\n"
+    "      radius: { use: hop, delay: 3, speed: 0.5, scale: $big }\n"
     "      material: clay\n"
     "      center:\n"
     "        curve: smooth\n"
-    "        keys: { 0 s: [-2, 1, 0], 500 ms: &here [0, 2.2, 0], 36: [2, 1, 0], 48: *here }\n"
+    "        keys: { 0 s: $left, 500 ms: &here [0, 2.2, 0], 36: [2, 1, 0], 48: *here }\n"
+    "  - sphere: { radius: 1, center: { keys: {\n"
+    "      0: { value: [0, 0, 0], curve: bezier, out: { time: 3, value: [1, 0, 0] } },\n"
+    "      12: { value: [0, 1, 0], curve: hermite, in: { time: -3 }, out: [0, 1, 0] },\n"
+    "      24: { value: [0, 1, 1], curve: tcb, in: [0, 0, 1], tension: 0.5, bias: -1 },\n"
+    "      36: { value: [0, 0, 0], curve: catmull-rom }, 48: [0, 1, 0] } } }\n"
     "  - triangle: { vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], material: { color: red } }\n"
     "  - group:\n"
-    "      rotation: { keys: { 0: [0, 0, 0], 24: { axis: [0, 1, 0], angle: 90 } } }\n"
-    "      objects: [ sphere: { center: [0, 0, 0], radius: 1 } ]\n";
+    "      rotation: { keys: { 0: [0, 0, 0], 24: { axis: [0, 1, 0], angle: 90 },\n"
+    "                          36: { euler: [1, 2, 3], order: zyx } } }\n"
+    "      scale: { spring: { stiffness: 9, damping: 1 }, keys: { 0: 1, 12: 2 } }\n"
+    "      objects: [ sphere: { center: [0, 0, 0], radius: 1 } ]\n"
+    "  - mesh: { rotation: { keys: { 0: { quaternion: [1, 0, 0, 0] }, 9: { direction: [1, 0, "
+    "0] "
+    "} } },\n"
+    "            position: { spring: { frequency: 2 }, keys: { 0: [0, 0, 0], 9: $left } }, "
+    "file: "
+    "one.ply }\n";
 
 /* Reads some bytes: an animation, or mistakes that were told with places in this file. */
 static zt_status read_bytes(told *t, const char *bytes, size_t size) {
@@ -57,6 +77,7 @@ static zt_status read_bytes(told *t, const char *bytes, size_t size) {
 static void every_beginning(void **state) {
     (void)state;
     static told t;
+    write_model("one.ply");
     assert_int_equal(read_bytes(&t, good, sizeof good - 1), ZT_OK);
     assert_string_equal(t.lines, "");
     for (size_t size = 0; size < sizeof good; size++) read_bytes(&t, good, size);
@@ -140,6 +161,65 @@ static void alias_bomb(void **state) {
     assert_non_null(strstr(t.lines, "aliases"));
     assert_true(zt_clock_s() - begin_s < 1);
     assert_true(peak_memory_mb() - before_mb < 64);
+}
+
+/* Nor do variables: each stands for ten of the one before, or for a deeper list. */
+static void variable_bombs(void **state) {
+    (void)state;
+    static told t;
+    static const char *const forms[] = {"$v%d, $v%d, $v%d, $v%d, $v%d, $v%d, $v%d, $v%d, $v%d",
+                                        "$v%d"};
+    for (int form = 0; form < 2; form++) {
+        char text[16 * 1024] = HEAD "variables:\n  v0: [x, x, x, x, x, x, x, x, x, x]\n";
+        for (int i = 1; i < 150; i++) {
+            size_t used = strlen(text);
+            int n = i - 1;
+            used += (size_t)snprintf(text + used, sizeof text - used, "  v%d: [", i);
+            used += (size_t)snprintf(text + used, sizeof text - used, forms[form], n, n, n, n,
+                                     n, n, n, n, n);
+            snprintf(text + used, sizeof text - used, "]\n");
+        }
+        double begin_s = zt_clock_s();
+        long before_mb = peak_memory_mb();
+        assert_int_equal(read_bytes(&t, text, strlen(text)), ZT_EDESCRIPTION);
+        assert_int_equal(t.error_count, 1);
+        assert_non_null(strstr(t.lines, "too many values"));
+        assert_true(zt_clock_s() - begin_s < 2);
+        assert_true(peak_memory_mb() - before_mb < 200);
+    }
+}
+
+/* An easing of many stops is read once, however often it is used, and many names are found
+ * without looking at all of them each time. */
+static void shared_words(void **state) {
+    (void)state;
+    static told t;
+    size_t size, used = 0;
+    char *ease = grown(&size,
+                       "zoetrope: 1\nfilm: { duration: 2 s }\ncamera: {}\nlights: "
+                       "[ambient: {}]\ncurves:\n  c: { curve: \"linear(0",
+                       ", 0.5", 100000, ", 1)\", keys: { 0: 1, 24: 2 } }\nobjects:\n");
+    char *text = malloc(size + 20000 * 100 + 1);
+    assert_non_null(text);
+    memcpy(text, ease, used = size);
+    for (int i = 0; i < 5000; i++)
+        used += (size_t)sprintf(text + used,
+                                "  - sphere: { center: [0, 0, 0], radius: { use: c } }\n");
+    double begin_s = zt_clock_s();
+    assert_int_equal(read_bytes(&t, text, used), ZT_OK);
+    assert_true(zt_clock_s() - begin_s < 3);
+    free(ease);
+
+    used = (size_t)sprintf(text, HEAD "lights: [ambient: {}]\nvariables:\n");
+    for (int i = 0; i < 20000; i++) used += (size_t)sprintf(text + used, "  v%d: %d\n", i, i);
+    used += (size_t)sprintf(text + used, "objects:\n");
+    for (int i = 0; i < 20000; i++)
+        used += (size_t)sprintf(text + used,
+                                "  - sphere: { center: [0, 0, 0], radius: $v%d }\n", i);
+    begin_s = zt_clock_s();
+    assert_int_equal(read_bytes(&t, text, used), ZT_OK);
+    assert_true(zt_clock_s() - begin_s < 3);
+    free(text);
 }
 
 /* What aliases may still stand for is read in bounded time: groups within groups within groups.
@@ -239,7 +319,8 @@ static void silent(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_beginning),  cmocka_unit_test(random_changes),
-        cmocka_unit_test(alias_bomb),       cmocka_unit_test(alias_groups),
+        cmocka_unit_test(alias_bomb),       cmocka_unit_test(variable_bombs),
+        cmocka_unit_test(shared_words),     cmocka_unit_test(alias_groups),
         cmocka_unit_test(large_files),      cmocka_unit_test(many_mistakes),
         cmocka_unit_test(unreadable_files), cmocka_unit_test(silent),
     };

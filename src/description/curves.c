@@ -17,6 +17,7 @@ static bool open_said(zt_said *said, zt_reading *reading, const zt_node *node) {
         return false;
     const zt_node *use = zt_field(&said->own, "use");
     if (!use) return true;
+    if (!zt_read_text(&reading->mistakes, use, "use")) return false;
     said->shared = zt_named(reading, &reading->curves, use, "curve");
     return said->shared && said->shared->kind == ZT_NODE_MAPPING; /* else told by the check */
 }
@@ -31,13 +32,7 @@ static zt_status read_usual(zt_way *way, bool *good, zt_reading *reading, const 
     if (!node) return ZT_OK;
     bool known;
     ZT_TRY(zt_read_way(way, &known, reading, node, "curve"));
-    *good &= known;
-    if (known && is_switch && way->kind != ZT_CURVE_HOLD) {
-        zt_mistake(mistakes, &node->place,
-                   "\"%s\" is either true or false: its curve can only be %s",
-                   said->property->name, zt_curve_name(ZT_CURVE_HOLD));
-        *good = false;
-    }
+    *good &= known && zt_suits(reading, node, *way, said->property);
     if (springs && zt_field(&said->own, "curve")) {
         zt_mistake(mistakes, &node->place, "a spring finds its own way: it has no \"curve\"");
         *good = false;
@@ -95,26 +90,25 @@ static zt_status keep_places(zt_track *track, zt_reading *reading, const zt_keys
     return ZT_OK;
 }
 
-zt_status zt_curve_read(zt_track *track, bool *good, zt_reading *reading, const zt_node *node) {
-    zt_said said = {.property = track->property};
-    *good = open_said(&said, reading, node);
-    if (!*good) return ZT_OK;
-    const zt_node *spring_node = zt_said_field(&said, "spring"),
-                  *before = zt_said_field(&said, "before"),
-                  *after = zt_said_field(&said, "after");
+/* The curve and the places of a track from what is written about it. */
+static zt_status read_said(zt_track *track, bool *good, zt_reading *reading,
+                           const zt_said *said) {
+    const zt_node *spring_node = zt_said_field(said, "spring"),
+                  *before = zt_said_field(said, "before"),
+                  *after = zt_said_field(said, "after");
     zt_curve_spec spec = {.value_kind = track->property->kind};
     zt_spring spring;
     if (spring_node) *good &= zt_read_spring(&spring, reading, spring_node);
     if (before) *good &= zt_read_end(&spec.before, reading, before, "before");
     if (after) *good &= zt_read_end(&spec.after, reading, after, "after");
     zt_way usual;
-    ZT_TRY(read_usual(&usual, good, reading, &said, spring_node != NULL));
+    ZT_TRY(read_usual(&usual, good, reading, said, spring_node != NULL));
     zt_change change;
-    *good &= read_change(&change, reading, &said);
-    const zt_curve_space *space = read_space(&spec.space, good, reading, &said);
+    *good &= read_change(&change, reading, said);
+    const zt_curve_space *space = read_space(&spec.space, good, reading, said);
     zt_keys keys;
     bool keys_good;
-    ZT_TRY(zt_keys_read(&keys, &keys_good, reading, &said, change, usual, space));
+    ZT_TRY(zt_keys_read(&keys, &keys_good, reading, said, change, usual, space));
     *good &= keys_good;
     if (!*good) return ZT_OK;
     spec.space = keys.space;
@@ -124,6 +118,18 @@ zt_status zt_curve_read(zt_track *track, bool *good, zt_reading *reading, const 
     ZT_TRY(zt_curve_from_keys(&track->curve, &reading->animation->arena, &spec));
     zt_doubts_tell(reading, track->property, &keys, &track->curve);
     return keep_places(track, reading, &keys);
+}
+
+zt_status zt_curve_read(zt_track *track, bool *good, zt_reading *reading, const zt_node *node) {
+    zt_mistakes *mistakes = &reading->mistakes;
+    zt_said said = {.property = track->property};
+    *good = open_said(&said, reading, node);
+    if (!*good) return ZT_OK;
+    int64_t count = mistakes->count;
+    ZT_TRY(read_said(track, good, reading, &said));
+    if (said.shared && mistakes->count > count)
+        zt_mistake_note(mistakes, &node->place, "\"%s\" uses it here", said.property->name);
+    return ZT_OK;
 }
 
 void zt_curves_check(zt_reading *reading) {

@@ -34,6 +34,15 @@ const zt_node *zt_said_field(const zt_said *said, const char *name) {
     return own || !said->shared ? own : zt_field(&(zt_fields){.mapping = said->shared}, name);
 }
 
+bool zt_suits(zt_reading *reading, const zt_node *node, zt_way way,
+              const zt_property *property) {
+    if (property->kind != ZT_VALUE_SWITCH || way.kind == ZT_CURVE_HOLD) return true;
+    zt_mistake(&reading->mistakes, &node->place,
+               "\"%s\" is either true or false: its curve can only be %s", property->name,
+               zt_curve_name(ZT_CURVE_HOLD));
+    return false;
+}
+
 /* ---- times ----------------------------------------------------------------------------------
  */
 
@@ -195,8 +204,7 @@ static zt_status read_parts(reader *r, int32_t k) {
         w->in = zt_field(&fields, "in");
         w->out = zt_field(&fields, "out");
         r->good &= good && w->value;
-        if (curve && r->said->property->kind == ZT_VALUE_SWITCH && way.kind != ZT_CURVE_HOLD)
-            not_of_this_way(r, curve, r->said->property->name, "hold");
+        if (curve) r->good &= zt_suits(r->reading, curve, way, r->said->property);
     }
     r->keys[k] = (zt_key){.time_s = w->time_s, .kind = way.kind, .ease = way.ease};
     if (fields.mapping) read_tension(r, k, &fields);

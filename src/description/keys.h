@@ -28,6 +28,10 @@ typedef struct zt_keys {
     zt_curve_space space;
 } zt_keys;
 
+/* Whether a way can be one of the property's, which is told where not. */
+bool zt_suits(zt_reading *reading, const zt_node *node, zt_way way,
+              const zt_property *property);
+
 /* Reads "keys", or "at" and "values". `usual` is the way of those that do not say one; `space`
  * is NULL where it is not said. *good is false where something is wrong, which is told.
  * ZT_EMEMORY. */

@@ -19,6 +19,19 @@ static int form_of(const zt_node *mapping) {
     return FORM_COUNT;
 }
 
+/* Whether there are no keys of other forms. */
+static bool is_of_form(zt_mistakes *mistakes, const zt_fields *fields, int form) {
+    int first = forms[form].first, end = first + forms[form].count;
+    for (int i = end; i < COUNT(names); i++) {
+        const zt_node *other = zt_field(fields, names[i]);
+        if (!other) continue;
+        zt_mistake(mistakes, &other->place, "\"%s\" cannot stand beside \"%s\"", names[i],
+                   zt_field(fields, names[first]) ? names[first] : names[first + 1]);
+        return false;
+    }
+    return true;
+}
+
 bool zt_is_rotation(const zt_node *mapping) { return form_of(mapping) < FORM_COUNT; }
 
 /* Turns around the fixed axes, one after the other. */
@@ -113,24 +126,23 @@ bool zt_read_rotation(zt_written_rotation *rotation, zt_mistakes *mistakes, cons
     }
     int form = form_of(node);
     zt_fields fields;
+    zt_fields_open(&fields, mistakes, node, what, names, COUNT(names));
     if (form == FORM_COUNT) {
-        zt_fields_open(&fields, mistakes, node, what, names, COUNT(names));
         zt_mistake(mistakes, &node->place,
                    "\"%s\" must be a list of 3 angles, or have an axis and an angle, euler, "
                    "quaternion or direction",
                    what);
         return false;
     }
-    bool known = zt_fields_open(&fields, mistakes, node, what, names + forms[form].first,
-                                forms[form].count);
+    if (!is_of_form(mistakes, &fields, form)) return false;
     switch (form) {
     case EULER:
-        return known && read_euler(rotation, mistakes, &fields, range);
+        return read_euler(rotation, mistakes, &fields, range);
     case AXIS:
-        return known && read_axis(rotation, mistakes, &fields, range);
+        return read_axis(rotation, mistakes, &fields, range);
     case QUATERNION:
-        return known && read_quaternion(rotation, mistakes, &fields);
+        return read_quaternion(rotation, mistakes, &fields);
     default:
-        return known && read_direction(rotation, mistakes, &fields);
+        return read_direction(rotation, mistakes, &fields);
     }
 }

@@ -71,6 +71,7 @@ bool zt_read_moment(zt_moment *moment, zt_mistakes *mistakes, const zt_node *nod
     const char *unit;
     int64_t fields[4];
     *moment = (zt_moment){0};
+    if (node->kind == ZT_NODE_MISTAKE) return false;
     if (node->kind == ZT_NODE_TEXT && split_timecode(fields, node->text))
         return read_timecode(moment, mistakes, node, fields, rate);
     if (zt_read_quantity(&number, &unit, node))

@@ -77,37 +77,51 @@ static bool is_use(const zt_node *node) {
     return node->kind == ZT_NODE_TEXT && !node->quoted && node->text[0] == '$' && node->text[1];
 }
 
+static zt_status replace_below(replacing *r, const zt_node *node, int depth, bool expanded);
+
 /* What stands where a variable is used: its value, at the place of the use. */
-static zt_status replace_use(const zt_node **node, replacing *r) {
+static zt_status replace_use(zt_node **out, replacing *r, const zt_node *use) {
     const zt_names *variables = &r->reading->variables;
-    const char *name = (*node)->text + 1;
-    zt_node *copy = ZT_PUSH(r->reading->temporary, zt_node, 1);
+    const char *name = use->text + 1;
+    zt_node *copy = *out = ZT_PUSH(r->reading->temporary, zt_node, 1);
     if (!copy) return ZT_EMEMORY;
     int32_t entry = find(variables, name, r->defined_count);
     if (entry < 0) {
-        tell_unknown(&r->reading->mistakes, variables, *node, name, r->defined_count,
-                     "variable");
-        *copy = (zt_node){.kind = ZT_NODE_MISTAKE};
+        tell_unknown(&r->reading->mistakes, variables, use, name, r->defined_count, "variable");
+        *copy = (zt_node){.kind = ZT_NODE_MISTAKE, .text = use->text};
     } else
         *copy = *zt_node_value(variables->mapping, entry);
-    copy->place = (*node)->place;
-    *node = copy;
+    copy->place = use->place;
     return ZT_OK;
+}
+
+/* Replaces a value that is a use, and what is used in it. */
+static zt_status replace_value(const zt_node **value, replacing *r, int depth, bool expanded) {
+    if (is_use(*value)) {
+        zt_node *copy;
+        ZT_TRY(replace_use(&copy, r, *value));
+        *value = copy;
+        expanded = true;
+    }
+    r->expanded_count += expanded;
+    return replace_below(r, *value, depth, expanded);
 }
 
 /* The times of keys may be variables; other keys are words. */
 static zt_status replace_keys(replacing *r, const zt_node *mapping) {
     const zt_node **items = (const zt_node **)mapping->items;
     for (int32_t i = 0; i < mapping->count; i++) {
-        const zt_node **key = &items[2 * (size_t)i];
-        if (!is_use(*key)) continue;
-        const zt_node *use = *key;
-        ZT_TRY(replace_use(key, r));
-        if ((*key)->kind == ZT_NODE_TEXT) continue;
-        if ((*key)->kind != ZT_NODE_MISTAKE)
+        const zt_node **key = &items[2 * (size_t)i], *use = *key;
+        if (!is_use(use)) continue;
+        zt_node *copy;
+        ZT_TRY(replace_use(&copy, r, use));
+        if (copy->kind == ZT_NODE_LIST || copy->kind == ZT_NODE_MAPPING) {
             zt_mistake(&r->reading->mistakes, &use->place, "\"%s\" is no time",
                        zt_show(use->text).text);
-        *key = use;
+            copy->kind = ZT_NODE_MISTAKE;
+            copy->text = use->text;
+        }
+        *key = copy;
     }
     return ZT_OK;
 }
@@ -126,13 +140,10 @@ static zt_status replace_below(replacing *r, const zt_node *node, int depth, boo
     const zt_node **items = (const zt_node **)node->items;
     size_t step = mapping ? 2 : 1;
     for (size_t i = mapping ? 1 : 0; i < step * (size_t)node->count; i += step) {
-        bool use = is_use(items[i]), below = expanded || use;
-        if (use) ZT_TRY(replace_use(&items[i], r));
-        r->expanded_count += below;
         if (mapping && zt_text_equal(items[i - 1]->text, "keys") &&
             items[i]->kind == ZT_NODE_MAPPING)
             ZT_TRY(replace_keys(r, items[i]));
-        ZT_TRY(replace_below(r, items[i], depth + 1, below));
+        ZT_TRY(replace_value(&items[i], r, depth + 1, expanded));
     }
     return ZT_OK;
 }
@@ -164,8 +175,7 @@ static zt_status read_variables(replacing *r, const zt_node *mapping) {
     const zt_node **items = (const zt_node **)mapping->items;
     for (; r->defined_count < mapping->count; r->defined_count++) {
         const zt_node **value = &items[2 * (size_t)r->defined_count + 1];
-        if (is_use(*value)) ZT_TRY(replace_use(value, r));
-        ZT_TRY(replace_below(r, *value, 1, false));
+        ZT_TRY(replace_value(value, r, 1, false));
     }
     return ZT_OK;
 }
@@ -180,8 +190,7 @@ zt_status zt_variables_apply(zt_reading *reading, const zt_node *root) {
         zt_expected(&reading->mistakes, mapping, "variables", "a mapping of names to values");
     for (int i = 0; i < reading->overrides.count; i++) {
         const zt_node **value = &reading->overrides.values[i];
-        if (*value && is_use(*value)) ZT_TRY(replace_use(value, &r));
-        if (*value) ZT_TRY(replace_below(&r, *value, 1, false));
+        if (*value) ZT_TRY(replace_value(value, &r, 1, false));
     }
     return replace_below(&r, root, 0, false);
 }

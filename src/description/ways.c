@@ -142,17 +142,28 @@ static bool read_measures(double values[MEASURES_MAX], zt_mistakes *mistakes,
     return good;
 }
 
+static bool has_any(const zt_node *node, const measure *measures, int count) {
+    for (int i = 0; node->kind == ZT_NODE_MAPPING && i < count; i++)
+        if (zt_field(&(zt_fields){.mapping = node}, measures[i].name)) return true;
+    return false;
+}
+
 bool zt_read_spring(zt_spring *spring, zt_reading *reading, const zt_node *node) {
     static const measure swings[] = {{"frequency", 1e-18, NAN}, {"damping_ratio", 0, 0.5}};
     static const measure forces[] = {
         {"stiffness", 1e-18, NAN}, {"damping", 0, NAN}, {"mass", 1e-18, 1}};
     const double tau = 6.283185307179586;
     zt_mistakes *mistakes = &reading->mistakes;
-    zt_fields fields = {.mapping = node};
     double v[MEASURES_MAX];
-    if (node->kind == ZT_NODE_MAPPING &&
-        (zt_field(&fields, "stiffness") || zt_field(&fields, "damping") ||
-         zt_field(&fields, "mass"))) {
+    bool by_forces = has_any(node, forces, COUNT(forces));
+    if (by_forces && has_any(node, swings, COUNT(swings))) {
+        zt_mistake(
+            mistakes, &node->place,
+            "a spring has a frequency and a damping_ratio, or a stiffness, a damping and "
+            "a mass, but not both");
+        return false;
+    }
+    if (by_forces) {
         if (!read_measures(v, mistakes, node, forces, COUNT(forces))) return false;
         *spring = zt_spring_of(v[0], v[1], v[2]);
         return true;
