@@ -127,7 +127,7 @@ static zt_status read_points(zt_path *path, bool *good, zt_reading *reading,
     if (!points) return ZT_EMEMORY;
     for (int32_t i = 0; i < node->count; i++) {
         double v[3];
-        *good &= zt_read_numbers(v, 3, mistakes, node->items[i], "path", zt_any_number);
+        *good &= zt_read_numbers(v, 3, mistakes, node->items[i], "point", zt_any_number);
         if (*good) points[i] = (vec3){v[0], v[1], v[2]};
     }
     if (!*good) return ZT_OK;
