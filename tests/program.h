@@ -54,8 +54,11 @@ static inline void read_text(char text[TEXT_MAX], const char *path) {
 /* Starts the program with signals as a shell at a terminal leaves them. */
 static inline pid_t start(const posix_spawn_file_actions_t *actions, const char *arguments) {
     char copy[512], *argv[ARGUMENTS_MAX] = {(char *)"zoetrope"};
-    char *environment[] = {(char *)"TERM=xterm",
-                           (char *)"ASAN_OPTIONS=allocator_may_return_null=1", NULL};
+    char *environment[] = {
+        (char *)"TERM=xterm", (char *)"ASAN_OPTIONS=allocator_may_return_null=1",
+        (char *)"LSAN_OPTIONS=print_suppressions=0:suppressions=" ZT_TEST_SOURCE_DIR
+                "/tests/leaks.txt",
+        NULL};
     snprintf(copy, sizeof copy, "%s", arguments);
     char *rest = NULL;
     int count = 1;
