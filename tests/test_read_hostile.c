@@ -194,6 +194,24 @@ static void variable_bombs(void **state) {
     }
 }
 
+/* Keys that are used by very many things do not take all memory. */
+static void many_uses(void **state) {
+    (void)state;
+    static told t;
+    size_t size;
+    static char begin[400 * 1024] = HEAD "lights: [ambient: {}]\ncurves: { c: { keys: {";
+    for (int i = 0; i < 20000; i++) snprintf(begin + strlen(begin), 16, "%d: 1, ", i);
+    strcat(begin, "} } }\nobjects:\n");
+    char *text = grown(&size, begin, "  - sphere: { center: [0, 0, 0], radius: { use: c } }\n",
+                       20000, "");
+    double begin_s = zt_clock_s();
+    assert_int_equal(read_bytes(&t, text, size), ZT_EDESCRIPTION);
+    assert_non_null(strstr(t.lines, "too many keys are used up to here"));
+    assert_true(zt_clock_s() - begin_s < 5);
+    assert_true(peak_memory_mb() < 2000);
+    free(text);
+}
+
 /* An easing of many stops is read once, however often it is used, and many names are found
  * without looking at all of them each time. */
 static void shared_words(void **state) {
@@ -323,11 +341,12 @@ static void silent(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_beginning),  cmocka_unit_test(random_changes),
-        cmocka_unit_test(alias_bomb),       cmocka_unit_test(variable_bombs),
-        cmocka_unit_test(shared_words),     cmocka_unit_test(alias_groups),
-        cmocka_unit_test(large_files),      cmocka_unit_test(many_mistakes),
-        cmocka_unit_test(unreadable_files), cmocka_unit_test(silent),
+        cmocka_unit_test(every_beginning), cmocka_unit_test(random_changes),
+        cmocka_unit_test(alias_bomb),      cmocka_unit_test(variable_bombs),
+        cmocka_unit_test(shared_words),    cmocka_unit_test(many_uses),
+        cmocka_unit_test(alias_groups),    cmocka_unit_test(large_files),
+        cmocka_unit_test(many_mistakes),   cmocka_unit_test(unreadable_files),
+        cmocka_unit_test(silent),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

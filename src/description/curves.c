@@ -10,6 +10,24 @@
 static const char *const names[] = {"keys",   "at", "values", "curve", "before", "after",
                                     "spring", "in", "delay",  "speed", "scale",  "use"};
 
+/* The named mapping that a node uses; NULL where there is none, or where the keys that are used
+ * again and again, up to here, are too many to be held. */
+static const zt_node *find_used(zt_reading *reading, const zt_node *use) {
+    enum { USED_KEY_COUNT_MAX = 1000 * 1000 };
+    zt_mistakes *mistakes = &reading->mistakes;
+    if (!zt_read_text(mistakes, use, "use")) return NULL;
+    const zt_node *shared = zt_named(reading, &reading->curves, use, "curve");
+    if (!shared || shared->kind != ZT_NODE_MAPPING) return NULL; /* told */
+    zt_fields fields = {.mapping = shared};
+    const zt_node *keys = zt_field(&fields, "keys"), *values = zt_field(&fields, "values");
+    const zt_node *used = keys ? keys : values;
+    if (used && used->kind != ZT_NODE_TEXT) reading->used_key_count += used->count;
+    if (reading->used_key_count <= USED_KEY_COUNT_MAX) return shared;
+    zt_mistake(mistakes, &use->place, "too many keys are used up to here: more than %d",
+               USED_KEY_COUNT_MAX);
+    return NULL;
+}
+
 /* Opens the mapping and the one that it uses. */
 static bool open_said(zt_said *said, zt_reading *reading, const zt_node *node) {
     if (!zt_fields_open(&said->own, &reading->mistakes, node, said->property->name, names,
@@ -17,9 +35,8 @@ static bool open_said(zt_said *said, zt_reading *reading, const zt_node *node) {
         return false;
     const zt_node *use = zt_field(&said->own, "use");
     if (!use) return true;
-    if (!zt_read_text(&reading->mistakes, use, "use")) return false;
-    said->shared = zt_named(reading, &reading->curves, use, "curve");
-    return said->shared && said->shared->kind == ZT_NODE_MAPPING; /* else told by the check */
+    said->shared = find_used(reading, use);
+    return said->shared != NULL;
 }
 
 /* "curve", or what is usual; springs have none. */
@@ -130,6 +147,12 @@ zt_status zt_curve_read(zt_track *track, bool *good, zt_reading *reading, const 
     if (said.shared && mistakes->count > count)
         zt_mistake_note(mistakes, &node->place, "\"%s\" uses it here", said.property->name);
     return ZT_OK;
+}
+
+zt_status zt_curve_use(zt_track *track, bool *good, zt_reading *reading, const zt_node *use) {
+    const zt_node *shared = find_used(reading, use);
+    *good = shared != NULL;
+    return shared ? zt_curve_read(track, good, reading, shared) : ZT_OK;
 }
 
 void zt_curves_check(zt_reading *reading) {

@@ -9,6 +9,9 @@
  * told. ZT_EMEMORY. */
 zt_status zt_curve_read(zt_track *track, bool *good, zt_reading *reading, const zt_node *node);
 
+/* The same from the named mapping that `use` holds the name of. */
+zt_status zt_curve_use(zt_track *track, bool *good, zt_reading *reading, const zt_node *use);
+
 /* Tells what is wrong with the names in "timings" and "curves", whether they are used or not.
  */
 void zt_curves_check(zt_reading *reading);

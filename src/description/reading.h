@@ -30,6 +30,7 @@ typedef struct zt_reading {
     zt_names curves;         /* to mappings with keys */
     zt_overrides overrides;
     zt_eases eases;
+    int64_t used_key_count; /* keys that were met by "use" */
     zt_things things;
     zt_reference oriented; /* the rotation that the last path with "orient" turns */
     struct zt_track_link *first_track, *last_track;
