@@ -21,6 +21,7 @@ enum {
     FOOT = 26,
     LEGEND_SLOT = 38,
     STRIP_STEPS = 64,
+    MARKS_MAX = 20, /* numbers along an axis */
     DOTS_MAX = 500,
     FRAME_TICKS_MAX = 130
 };
@@ -137,9 +138,10 @@ static void print_value_axis(const panel *p) {
     double step = nice_step((p->high / 2 - p->low / 2) * 2, 5);
     if (!isfinite(step) || !(step > 0)) step = p->high / 2 - p->low / 2;
     double begin = ceil(p->low / step), end = floor(p->high / step);
-    for (double i = begin; i <= end && i <= begin + 20; i++) {
-        double value = i == 0 ? 0 : i * step, y = y_of(p, value);
-        print_line(p->out, LEFT, y, RIGHT, y, i == 0 ? "zero" : "grid");
+    for (int i = 0; i <= end - begin && i <= MARKS_MAX; i++) {
+        bool zero = begin + i == 0;
+        double value = zero ? 0 : (begin + i) * step, y = y_of(p, value);
+        print_line(p->out, LEFT, y, RIGHT, y, zero ? "zero" : "grid");
         fprintf(p->out, "<text x=\"%d\" y=\"", LEFT - 8);
         print_number(p->out, y + 4);
         fprintf(p->out, "\" class=\"n end\">%.6g</text>\n", value);
@@ -150,14 +152,14 @@ static void print_time_axis(const panel *p, double bottom) {
     const zt_film *film = zt_animation_film(p->subject->film);
     double step = nice_step(p->last_s - p->first_s, 8);
     double begin = ceil(p->first_s / step - 1e-9), end = floor(p->last_s / step + 1e-9);
-    for (double i = begin; i <= end; i++) {
-        double x = x_of(p, i * step);
+    for (int i = 0; i <= end - begin && i <= MARKS_MAX; i++) {
+        double time_s = begin + i == 0 ? 0 : (begin + i) * step, x = x_of(p, time_s);
         print_line(p->out, x, p->top, x, p->top + PLOT_HEIGHT, "grid");
         fputs("<text x=\"", p->out);
         print_number(p->out, x);
         fputs("\" y=\"", p->out);
         print_number(p->out, bottom + 18);
-        fprintf(p->out, "\" class=\"n mid\">%.6g s</text>\n", i == 0 ? 0 : i * step);
+        fprintf(p->out, "\" class=\"n mid\">%.6g s</text>\n", time_s);
     }
     int64_t first = (int64_t)ceil(p->first_s * film->rate.num / film->rate.den - 1e-6);
     int64_t last = (int64_t)floor(p->last_s * film->rate.num / film->rate.den - 1e-6);

@@ -2,9 +2,9 @@
 
 #include <ctype.h>
 #include <float.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -19,15 +19,18 @@ static const double degrees = 180 / 3.14159265358979323846;
 
 /* "hh:mm:ss:ff" at a rate; false where it is none. */
 static bool read_timecode(double *time_s, zt_rate rate, const char *text) {
-    int hours, minutes, seconds, frames, end = 0;
-    if (strspn(text, "0123456789:") != strlen(text) || strlen(text) > 11) return false;
-    if (sscanf(text, "%d:%d:%d:%d%n", &hours, &minutes, &seconds, &frames, &end) != 4 ||
-        text[end] || minutes > 59 || seconds > 59)
-        return false;
-    int64_t per_s = (rate.num + rate.den - 1) / rate.den; /* frames are counted in whole ones */
-    if (frames >= per_s) return false;
-    *time_s =
-        zt_rate_time(rate, ((INT64_C(60) * hours + minutes) * 60 + seconds) * per_s + frames);
+    int64_t fields[4];
+    for (int i = 0; i < 4; i++) {
+        size_t digits = strspn(text, "0123456789");
+        if (digits < 1 || digits > 6 || text[digits] != (i < 3 ? ':' : '\0')) return false;
+        fields[i] = strtol(text, NULL, 10);
+        text += digits + 1;
+    }
+    int64_t per_s =
+        ((int64_t)rate.num + rate.den - 1) / rate.den; /* frames are counted in whole ones */
+    if (fields[1] > 59 || fields[2] > 59 || fields[3] >= per_s) return false;
+    int64_t seconds = (fields[0] * 60 + fields[1]) * 60 + fields[2];
+    *time_s = zt_rate_time(rate, seconds * per_s + fields[3]);
     return true;
 }
 
@@ -118,7 +121,7 @@ static zt_status difference(zt_explanation *e, const zt_subject *subject,
     const zt_curve *curve = curve_of(subject);
     double way_s = curve ? way_duration_s(curve, e->time_s) : 0.1;
     double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
-    double one[ZT_SUBJECT_CHANNELS_MAX], two[ZT_SUBJECT_CHANNELS_MAX];
+    double one[ZT_SUBJECT_CHANNELS_MAX] = {0}, two[ZT_SUBJECT_CHANNELS_MAX] = {0};
     bool ahead = !curve || same_way(curve, t, t + 2 * h);
     bool behind = !curve || same_way(curve, t - h, t);
     bool central = behind && ahead;
