@@ -44,7 +44,7 @@ static void a_dip_between_frames(void **state) {
     keys[2].before = &slopes[2];
     add_keys(film, "ball.radius", (zt_curve_spec){.key_count = 3, .keys = keys});
     told t = advice_on(film);
-    assert_int_equal(t.warning_count, 1);
+    assert_int_equal(t.warning_count, 2); /* the keys are equal, see equal_keys */
     assert_says(&t, "12:7: warning: ball.radius reaches -2 at 3.5 s (frame 3.50)");
     assert_says(&t, "it is kept at 0, the least it can be");
 }
@@ -59,15 +59,42 @@ static void a_short_dip(void **state) {
     keys[0].after = &down, keys[1].before = &up;
     add_keys(film, "ball.radius", (zt_curve_spec){.key_count = 2, .keys = keys});
     told t = advice_on(film);
-    assert_int_equal(t.warning_count, 0); /* 1 - 4 u (1 - u) touches 0 and no more */
+    assert_int_equal(t.warning_count, 1); /* 1 - 4 u (1 - u) touches 0 and no more */
+    assert_null(strstr(t.lines, "reaches"));
 
     film = small_film(1000 * 1000, (zt_rate){24, 1});
     const double deeper = -4400, higher = 4400;
     keys[0].after = &deeper, keys[1].before = &higher;
     add_keys(film, "ball.radius", (zt_curve_spec){.key_count = 2, .keys = keys});
     t = advice_on(film);
-    assert_int_equal(t.warning_count, 1);
+    assert_int_equal(t.warning_count, 2);
     assert_says(&t, "ball.radius reaches -0.1 at");
+}
+
+/* Movement between two equal keys is told once, at the first of them; ways that stand still
+ * there are not, nor are keys that differ. */
+static void equal_keys(void **state) {
+    (void)state;
+    const double times[] = {0, 1, 2, 3}, moves[] = {0, 2, 2, 0}, rests[] = {2, 2, 2, 2};
+    zt_animation *film = small_film(72, (zt_rate){24, 1});
+    add_simple(film, "ball.radius", ZT_CURVE_TCB, 4, times, moves);
+    told t = advice_on(film);
+    assert_int_equal(t.warning_count, 1);
+    assert_says(&t, "ball.radius moves between this key and the next, which are equal");
+    const struct {
+        zt_curve_kind kind;
+        const double *values;
+    } silent[] = {{ZT_CURVE_SMOOTH, moves},
+                  {ZT_CURVE_LINEAR, moves},
+                  {ZT_CURVE_HOLD, moves},
+                  {ZT_CURVE_TCB, rests},
+                  {ZT_CURVE_TCB, times}};
+    for (size_t i = 0; i < sizeof silent / sizeof *silent; i++) {
+        film = small_film(72, (zt_rate){24, 1});
+        add_simple(film, "ball.radius", silent[i].kind, 4, times, silent[i].values);
+        t = advice_on(film);
+        assert_silent(&t);
+    }
 }
 
 /* Upper bounds, in degrees; springs and eases that overshoot. */
@@ -199,6 +226,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dip_between_frames),
         cmocka_unit_test(a_short_dip),
+        cmocka_unit_test(equal_keys),
         cmocka_unit_test(overshoot),
         cmocka_unit_test(silence),
         cmocka_unit_test(along_up),

@@ -122,13 +122,56 @@ static void advise_range(const zt_animation *animation, const zt_track *track,
                unit, w.value < w.bound ? "least" : "most");
 }
 
+/* ---- movement between two equal keys -------------------------------------------------------
+ */
+
+/* How far a way goes from its first key's value, relative to the largest number of the track;
+ * looked at in some places within. */
+static double excursion(const zt_curve *curve, int32_t way, double size) {
+    enum { PLACES = 16 };
+    const double *key = curve->values + (int64_t)way * curve->width;
+    double value[ZT_VALUE_WIDTH_MAX], most = 0;
+    for (int i = 1; i < PLACES; i++) {
+        zt_curve_eval(value, curve, way_time(curve, way, (double)i / PLACES));
+        for (int32_t c = 0; c < curve->width; c++) most = fmax(most, fabs(value[c] - key[c]));
+    }
+    return size > 0 ? most / size : most;
+}
+
+static bool equal_keys(const zt_curve *curve, int32_t way) {
+    const double *a = curve->values + (int64_t)way * curve->width;
+    for (int32_t c = 0; c < curve->width; c++)
+        if (a[c] != a[curve->width + c]) return false;
+    return true;
+}
+
+/* Told once a track: where one way is meant, so are the others. */
+static void advise_equal_keys(const zt_track *track, zt_listener listener) {
+    const zt_curve *curve = &track->curve;
+    if (curve->spring) return; /* it swings where its keys rest, as it should */
+    double size = 0;
+    for (int64_t i = 0; i < (int64_t)curve->key_count * curve->width; i++)
+        size = fmax(size, fabs(curve->values[i]));
+    for (int32_t way = 0; way + 1 < curve->key_count && way < ZT_ADVICE_MOMENTS_MAX; way++) {
+        if (curve->kinds[way] <= ZT_CURVE_SMOOTH || !equal_keys(curve, way)) continue;
+        if (excursion(curve, way, size) <= 1e-6) continue;
+        zt_tell_at(listener, ZT_WARNING, track->key_places ? &track->key_places[way] : NULL,
+                   "%s moves between this key and the next, which are equal; \"curve: hold\" "
+                   "holds still",
+                   track->name);
+        return;
+    }
+}
+
 /* ---- all of it -----------------------------------------------------------------------------
  */
 
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener) {
     for (int32_t i = 0; i < animation->track_count; i++) {
         const zt_track *track = &animation->tracks[i];
-        if (track->kind == ZT_TRACK_CURVE) advise_range(animation, track, listener);
+        if (track->kind != ZT_TRACK_CURVE) continue;
+        advise_range(animation, track, listener);
+        advise_equal_keys(track, listener);
     }
     return zt_advice_camera(animation, listener);
 }
