@@ -107,9 +107,9 @@ zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subj
 
 /* Tells as warnings, at their places, what is legal but probably not meant and shows only in
  * motion: values that leave their range between keys, movement between equal keys, a camera that
- * looks along its up vector
- * or is inside of a sphere. Looks at every frame and between frames, but at no more than
- * 10,000 moments, evenly spread over longer films. ZT_EMEMORY is all that can fail. */
+ * looks along its up vector or is inside of a sphere. Looks at every frame and between frames, but
+ * at no more than 10,000 moments, evenly spread over longer films. ZT_EMEMORY is all that can
+ * fail. */
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener);
 
 #ifdef __cplusplus
