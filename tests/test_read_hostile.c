@@ -212,6 +212,67 @@ static void many_uses(void **state) {
     free(text);
 }
 
+/* Numbers of any size in any place give finite values, or are told. */
+static void extremes(void **state) {
+    (void)state;
+    static told t;
+    static const char *const numbers[] = {"1e308", "-1e308", "5e-324", "-1e-300",
+                                          "1e154", "0",      "1"};
+    static const char *const properties[] = {
+        "position: { curve: hermite, scale: %s, speed: 1e9, keys: { 0: { value: [%s, 0, 1], "
+        "out: "
+        "[%s, 1, 2] }, 9: [0, %s, 0] } }",
+        "position: { curve: bezier, scale: %s, keys: { 0: { value: [%s, 0, 1], out: { value: "
+        "[%s, "
+        "0, 0] } }, 9: [0, %s, 0] } }",
+        "position: { curve: tcb, after: linear, keys: { 0: [%s, %s, 0], 9: [0, %s, 0], 18: "
+        "[%s, "
+        "0, 0] } }",
+        "position: { curve: catmull-rom, after: loop-with-offset, keys: { 0: [%s, %s, 0], 9: "
+        "[0, "
+        "%s, 0], 18: [%s, 0, 0] } }",
+        "position: { spring: { stiffness: %s, damping: %s }, keys: { 0: [%s, 0, 0], 9: [%s, 0, "
+        "0] } }",
+        "rotation: { curve: linear, after: linear, keys: { 0: { axis: [%s, %s, 0], angle: %s "
+        "}, "
+        "9: { axis: [1, %s, 0], angle: 0 } } }",
+        "rotation: { keys: { 0: { quaternion: [%s, %s, 0, 0] }, 9: [%s, %s, 0] } }",
+        "rotation: { in: turns, curve: hermite, keys: { 0: { value: { direction: [%s, %s, 1] "
+        "}, "
+        "out: [%s, 0, %s] }, 9: [0, 0, 0] } }",
+        "rotation: { curve: hermite, keys: { 0: { value: [0, 0, 0], out: [%s, %s, %s, %s] }, "
+        "9: "
+        "[0, 1, 0] } }",
+        "scale: { curve: \"back-out(%s)\", keys: { 0: %s, 9: %s, 12: %s } }",
+        "scale: { curve: \"elastic-in(%s, %s)\", keys: { 0: %s, 9: %s } }",
+        "scale: { keys: { %s s: %s, %s ms: %s, 3: 1 } }",
+    };
+    enum { NUMBER_COUNT = sizeof numbers / sizeof *numbers };
+    draw d = {.key = 3};
+    for (size_t p = 0; p < sizeof properties / sizeof *properties; p++)
+        for (int round = 0; round < 150; round++) {
+            char text[2048], property[1024];
+            const char *n[4];
+            for (int i = 0; i < 4; i++) n[i] = numbers[draw_below(&d, NUMBER_COUNT)];
+            snprintf(property, sizeof property, properties[p], n[0], n[1], n[2], n[3]);
+            snprintf(text, sizeof text, HEAD "objects: [ group: { objects: [],\n%s } ]\n",
+                     property);
+            write_bytes("film.yaml", text, strlen(text));
+            t = (told){0};
+            zt_animation *animation;
+            zt_status status = zt_animation_read(&animation, "film.yaml", NULL, 0, told_to(&t));
+            if (status != ZT_OK && (status != ZT_EDESCRIPTION || t.error_count == 0))
+                fail_msg("%s: %d", property, status);
+            for (int i = -30; animation && i < 60; i++) {
+                double value[ZT_VALUE_WIDTH_MAX] = {0};
+                zt_curve_eval(value, &animation->tracks[0].curve, i / 48.);
+                for (int c = 0; c < 4; c++)
+                    if (!isfinite(value[c])) fail_msg("%s at %g", property, i / 48.);
+            }
+            zt_animation_free(&animation);
+        }
+}
+
 /* An easing of many stops is read once, however often it is used, and many names are found
  * without looking at all of them each time. */
 static void shared_words(void **state) {
@@ -341,12 +402,12 @@ static void silent(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_beginning), cmocka_unit_test(random_changes),
-        cmocka_unit_test(alias_bomb),      cmocka_unit_test(variable_bombs),
-        cmocka_unit_test(shared_words),    cmocka_unit_test(many_uses),
-        cmocka_unit_test(alias_groups),    cmocka_unit_test(large_files),
-        cmocka_unit_test(many_mistakes),   cmocka_unit_test(unreadable_files),
-        cmocka_unit_test(silent),
+        cmocka_unit_test(every_beginning),  cmocka_unit_test(random_changes),
+        cmocka_unit_test(alias_bomb),       cmocka_unit_test(variable_bombs),
+        cmocka_unit_test(shared_words),     cmocka_unit_test(extremes),
+        cmocka_unit_test(many_uses),        cmocka_unit_test(alias_groups),
+        cmocka_unit_test(large_files),      cmocka_unit_test(many_mistakes),
+        cmocka_unit_test(unreadable_files), cmocka_unit_test(silent),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -226,6 +226,23 @@ static bool read_difference(double *value, reader *r, const zt_node *node, const
     return zt_read_angles(value, mistakes, node, what, zt_any_number);
 }
 
+/* The same, times a factor. */
+static void read_scaled(const double **value, double *room, double factor, reader *r,
+                        const zt_node *node, const char *what, zt_curve_kind kind,
+                        zt_curve_space space) {
+    bool finite = true;
+    *value = room;
+    r->good &= read_difference(room, r, node, what, kind, space);
+    for (int c = 0; c < ZT_VALUE_WIDTH_MAX; c++) {
+        room[c] *= factor;
+        finite &= isfinite(room[c]);
+    }
+    if (finite) return;
+    zt_mistake(&r->reading->mistakes, &node->place,
+               "\"%s\" times %g, by \"scale\" and \"speed\", is too large", what, factor);
+    r->good = false;
+}
+
 /* "{ time: 0.2 s, value: VALUE }" from the key; `time_s` counts away from it. */
 static void read_bezier_handle(double *time_s, const double **value, double *room, reader *r,
                                const zt_node *node, bool leaving, zt_curve_space space) {
@@ -248,17 +265,8 @@ static void read_bezier_handle(double *time_s, const double **value, double *roo
             *time_s = 0;
         }
     }
-    if (!offset) return;
-    *value = room;
-    r->good &= read_difference(room, r, offset, "value", ZT_CURVE_BEZIER, space);
-    for (int c = 0; c < ZT_VALUE_WIDTH_MAX; c++) room[c] *= r->change.scale;
-}
-
-static void read_tangent(const double **value, double *room, reader *r, const zt_node *node,
-                         const char *what, zt_curve_space space) {
-    *value = room;
-    r->good &= read_difference(room, r, node, what, ZT_CURVE_HERMITE, space);
-    for (int c = 0; c < ZT_VALUE_WIDTH_MAX; c++) room[c] *= r->change.scale * r->change.speed;
+    if (offset)
+        read_scaled(value, room, r->change.scale, r, offset, "value", ZT_CURVE_BEZIER, space);
 }
 
 /* "in" or "out" of a key. */
@@ -274,7 +282,8 @@ static zt_status read_handle(reader *r, int32_t k, bool leaving, zt_curve_space 
         read_bezier_handle(leaving ? &key->after_s : &key->before_s,
                            leaving ? &key->after : &key->before, room, r, node, leaving, space);
     else if (kind == ZT_CURVE_HERMITE)
-        read_tangent(leaving ? &key->after : &key->before, room, r, node, name, space);
+        read_scaled(leaving ? &key->after : &key->before, room,
+                    r->change.scale * r->change.speed, r, node, name, kind, space);
     else
         not_of_this_way(r, node, name, "bezier and hermite");
     return ZT_OK;
