@@ -90,6 +90,8 @@ static void a_spring(void **state) {
         assert_near(e.value[0], 3 - 2 * cos(2 * pi * (t - 1)), 1e-12);
         assert_near(e.velocity[0], 4 * pi * sin(2 * pi * (t - 1)), 1e-10);
         assert_true(e.velocity_exact);
+        assert_null(e.end); /* it swings on */
+        assert_int_equal(e.key_before, 1);
     }
     assert_near(explained(film, "lamp.intensity", 0.5).velocity[0], 0, 0);
     zt_animation_free(&film);

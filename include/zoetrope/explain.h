@@ -68,8 +68,9 @@ zt_subject_words zt_subject_in_words(const zt_subject *subject, const double *va
 typedef struct zt_subject_key {
     double time_s;
     double value[ZT_SUBJECT_CHANNELS_MAX];
-    const char *way; /* the kind of the way to the next key: "smooth"; NULL after the last */
-    char ease[80];   /* what spreads it over its time: "ease-in-out"; "" for nothing */
+    /* The kind of the way to the next key: "smooth". NULL of the last key, but of springs. */
+    const char *way;
+    char ease[80]; /* what spreads it over its time: "ease-in-out"; "" for nothing */
     zt_subject_place place;
 } zt_subject_key;
 
@@ -96,7 +97,8 @@ typedef struct zt_explanation {
     int key_before, key_after; /* -1 where there is none: the moment is at or beyond an end */
     double u;                  /* share of the time between the two keys, 0..1 */
     double s;                  /* what easing, or solving a Bezier curve, makes of it */
-    const char *end;           /* beyond the keys: "hold", "loop" ...; else NULL */
+    const char *end;           /* beyond the keys: "hold", "loop" ...; else NULL, and where a
+                        spring swings on */
     double beyond_s;           /* how far past the last key, or (negative) before the first */
     double round;              /* of a loop: which repetition; 0 is the keys as given */
 } zt_explanation;
@@ -106,10 +108,10 @@ zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subj
                              double time_s, zt_listener listener);
 
 /* Tells as warnings, at their places, what is legal but probably not meant and shows only in
- * motion: values that leave their range between keys, movement between equal keys, a camera that
- * looks along its up vector or is inside of a sphere. Looks at every frame and between frames, but
- * at no more than 10,000 moments, evenly spread over longer films. ZT_EMEMORY is all that can
- * fail. */
+ * motion: values that leave their range between keys, movement between equal keys, a camera
+ * that looks along its up vector or is inside of a sphere. Looks at every frame and between
+ * frames, but at no more than 10,000 moments, evenly spread over longer films. ZT_EDESCRIPTION,
+ * told, where an expression has no value at one of them; ZT_EMEMORY. */
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener);
 
 #ifdef __cplusplus

@@ -69,14 +69,17 @@ static void print_key(const zt_subject *subject, int index) {
 }
 
 static void print_way(const zt_subject *subject, const zt_explanation *e) {
+    zt_subject_key key = {.ease = ""};
+    if (e->key_before >= 0) key = zt_subject_key_at(subject, e->key_before);
     printf("%-*s ", LABEL_WIDTH, "way");
-    if (e->key_before >= 0 && e->key_after >= 0) {
-        zt_subject_key key = zt_subject_key_at(subject, e->key_before);
+    if (key.way && e->key_after >= 0) {
         printf("%s", key.way);
         if (*key.ease) printf(", spread by %s", key.ease);
         printf(": u = %.6g of its time", e->u);
         if (e->s != e->u) printf(", s = %.6g of its curve", e->s);
-    } else
+    } else if (key.way)
+        printf("%s, %.6g s after the last key", key.way, e->beyond_s);
+    else
         printf("none: the moment is %s the keys", e->key_before < 0 ? "before" : "at or after");
     putchar('\n');
     if (!e->end) return;

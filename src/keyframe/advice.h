@@ -15,7 +15,7 @@ enum {
 int64_t zt_advice_moment_count(const zt_film *film, int64_t most);
 double zt_advice_moment_s(const zt_film *film, int64_t index, int64_t count);
 
-/* The advice on the camera. ZT_EMEMORY is all that can fail. */
+/* The advice on the camera. Fails as freezing does. */
 zt_status zt_advice_camera(const zt_animation *animation, zt_listener listener);
 
 #endif

@@ -166,7 +166,9 @@ static void explain_keys(zt_explanation *e, const zt_curve *curve) {
     e->u = spot.u;
     e->s = spot.s;
     e->round = spot.round;
-    if (before || after) e->end = zt_curve_end_name(before ? curve->before : curve->after);
+    zt_curve_end end = before ? curve->before : curve->after;
+    bool swings_on = after && curve->spring && end == ZT_END_HOLD;
+    if ((before || after) && !swings_on) e->end = zt_curve_end_name(end);
     e->beyond_s = before ? e->time_s - first_s : after ? e->time_s - last_s : 0;
 }
 

@@ -220,9 +220,11 @@ zt_subject_key zt_subject_key_at(const zt_subject *subject, int key) {
     memcpy(out.value, curve->values + (int64_t)key * curve->width,
            (size_t)curve->width * sizeof *out.value);
     to_written(out.value, subject);
-    if (key + 1 < curve->key_count) {
-        out.way = curve->spring ? "spring" : zt_curve_name((zt_curve_kind)curve->kinds[key]);
-        const zt_ease *ease = curve->eases && !curve->spring ? curve->eases[key] : NULL;
+    if (curve->spring)
+        out.way = "spring";
+    else if (key + 1 < curve->key_count) {
+        const zt_ease *ease = curve->eases ? curve->eases[key] : NULL;
+        out.way = zt_curve_name((zt_curve_kind)curve->kinds[key]);
         if (ease) write_ease(out.ease, sizeof out.ease, ease);
     }
     if (track->key_places) out.place = public_place(&track->key_places[key]);
