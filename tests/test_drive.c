@@ -8,11 +8,11 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <threads.h>
 
 #include <cmocka.h>
 
 #include "base/clock.h"
+#include "base/pool.h"
 #include "descriptions.h"
 
 static const double pi = 3.14159265358979323846;
@@ -261,10 +261,12 @@ typedef struct film {
     zt_object objects[FRAMES][8];
     zt_light lights[FRAMES][3];
     int first, step; /* the order in which frames are asked for; step and FRAMES are coprime */
+    int frozen_count;
 } film;
 
-static int freeze_all(void *user) {
-    film *f = user;
+static void freeze_all(void *user, int task, int worker) {
+    (void)worker;
+    film *f = (film *)user + task;
     zt_arena arena = {0};
     for (int i = 0; i < FRAMES; i++) {
         int frame = (f->first + i * f->step) % FRAMES;
@@ -272,13 +274,13 @@ static int freeze_all(void *user) {
         zt_arena_reset(&arena);
         if (zt_animation_freeze(&s, f->animation, frame / 24., &arena, (zt_listener){0}) !=
             ZT_OK)
-            return 1;
+            continue;
+        f->frozen_count++;
         memcpy(&f->cameras[frame], &s.camera, sizeof s.camera);
         memcpy(f->objects[frame], s.objects, (size_t)s.object_count * sizeof *s.objects);
         memcpy(f->lights[frame], s.lights, (size_t)s.light_count * sizeof *s.lights);
     }
     zt_arena_free(&arena);
-    return 0;
 }
 
 static bool same(const film *a, const film *b) {
@@ -319,15 +321,14 @@ static void any_order_any_thread(void **state) {
         films[i].first = first[i];
         films[i].step = step[i];
     }
-    assert_int_equal(freeze_all(&films[0]), 0);
-    thrd_t threads[THREADS];
-    for (int i = 0; i < THREADS; i++)
-        assert_int_equal(thrd_create(&threads[i], freeze_all, &films[i + 1]), thrd_success);
-    for (int i = 0; i < THREADS; i++) {
-        int failed;
-        assert_int_equal(thrd_join(threads[i], &failed), thrd_success);
-        assert_int_equal(failed, 0);
-        assert_true(same(&films[0], &films[i + 1]));
+    freeze_all(films, 0, 0);
+    zt_pool *pool;
+    assert_int_equal(zt_pool_open(&pool, THREADS), ZT_OK);
+    zt_pool_run(pool, THREADS, freeze_all, films + 1);
+    zt_pool_close(&pool);
+    for (int i = 0; i <= THREADS; i++) {
+        assert_int_equal(films[i].frozen_count, FRAMES);
+        assert_true(same(&films[0], &films[i]));
     }
     zt_animation_free(&animation);
 }

@@ -1,14 +1,11 @@
 #include "description/constraints.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "description/curves.h"
 #include "description/formulas.h"
 #include "description/motion.h"
 #include "description/times.h"
+#include "description/trial.h"
 #include "description/values.h"
-#include "keyframe/order.h"
 
 #define COUNT(array) (int)(sizeof(array) / sizeof *(array))
 
@@ -137,12 +134,10 @@ static zt_status read_points(zt_path *path, bool *good, zt_reading *reading,
 /* The path that a named set of keys goes, whatever their times. */
 static zt_status read_named_path(zt_path *path, bool *good, zt_reading *reading,
                                  const zt_node *node, const zt_property *property) {
-    const zt_node *keys = zt_named(reading, &reading->curves, node, "curve");
     zt_track *shape = ZT_PUSH(&reading->animation->arena, zt_track, 1);
     if (!shape) return ZT_EMEMORY;
     shape->property = property;
-    *good = keys && keys->kind == ZT_NODE_MAPPING; /* else told */
-    if (*good) ZT_TRY(zt_curve_read(shape, good, reading, keys));
+    ZT_TRY(zt_curve_use(shape, good, reading, node));
     return *good ? zt_path_make(path, &reading->animation->arena, &shape->curve) : ZT_OK;
 }
 
@@ -207,7 +202,7 @@ static zt_status read_orient(zt_reading *reading, const zt_fields *fields, const
         good &= zt_read_angle(&rotation.track.follow.bank, mistakes, bank, "bank",
                               (zt_range){-180, 180, "deg"});
     if (!good) return ZT_OK;
-    if (is_oriented == 0) {
+    if (!orient || is_oriented == 0) {
         if (bank || up)
             zt_mistake(mistakes, bank ? &bank->place : &up->place,
                        "\"%s\" is for \"orient: true\"", bank ? "bank" : "up");
@@ -328,8 +323,9 @@ zt_status zt_constraint_read(bool *taken, zt_reading *reading, const zt_node *no
     const zt_node *value = find_word(&word, node);
     bool formula = node->kind == ZT_NODE_TEXT && node->text[0] == '=';
     bool aim = is_aim(node, property);
-    *taken = is_turned_twice(reading, node, property, index) || value || formula || aim;
-    if (!*taken || is_turned_twice(reading, node, property, index)) return ZT_OK;
+    bool twice = is_turned_twice(reading, node, property, index);
+    *taken = twice || value || formula || aim;
+    if (!*taken || twice) return ZT_OK;
     if (value) return read_mapping(&p, reading, node, word, value, thing);
     p.named = node;
     p.track.kind = formula ? ZT_TRACK_FORMULA : ZT_TRACK_LOOK_AT;
@@ -379,69 +375,6 @@ static zt_status close_pending(pending *p, zt_reading *reading) {
     return ZT_OK;
 }
 
-/* ---- order ----------------------------------------------------------------------------------
- */
-
-/* "a.radius needs itself" or "a.radius needs b.radius, which needs a.radius". */
-static void tell_cycle(void *user, const zt_animation *animation, const int32_t *tracks,
-                       int32_t count) {
-    enum { SHOWN_MAX = 8 };
-    zt_mistakes *mistakes = user;
-    char chain[800] = "";
-    const zt_track *first = &animation->tracks[tracks[0]];
-    for (int32_t i = 1; i < count && i <= SHOWN_MAX; i++) {
-        size_t used = strlen(chain);
-        snprintf(chain + used, sizeof chain - used, "%s, which needs ",
-                 i == SHOWN_MAX ? "others" : zt_show(animation->tracks[tracks[i]].name).text);
-    }
-    zt_mistake(mistakes, &first->place, "%s needs %s%s", zt_show(first->name).text, chain,
-               count > 1 ? zt_show(first->name).text : "itself");
-    for (int32_t i = 1; i < count && i < SHOWN_MAX; i++)
-        zt_mistake_note(mistakes, &animation->tracks[tracks[i]].place, "%s is here",
-                        zt_show(animation->tracks[tracks[i]].name).text);
-}
-
-/* ---- a first look ---------------------------------------------------------------------------
- */
-
-/* What freezing tells is a mistake in the description. */
-static void count_mistake(void *user, const zt_message *message) {
-    zt_place place = {message->file, message->source_line, message->line, message->column,
-                      message->length};
-    zt_mistake(user, &place, "%s", message->text);
-}
-
-/* All that is driven has its value of time 0 in the scene at rest, as keys have. */
-static void settle(zt_animation *animation, const zt_scene *begin) {
-    for (int32_t i = 0; i < animation->track_count; i++) {
-        const zt_track *track = &animation->tracks[i];
-        double value[ZT_VALUE_WIDTH_MAX];
-        if (track->kind == ZT_TRACK_CURVE) continue;
-        zt_property_get(value, track->property, begin, track->index);
-        zt_property_set(track->property, &animation->rest, track->index, value);
-    }
-}
-
-/* Freezes the first, the middle and the last frame, so that what has no value there is told
- * before anything is rendered. */
-static zt_status try_frames(zt_reading *reading) {
-    zt_animation *animation = reading->animation;
-    const zt_film *film = &animation->film;
-    const int64_t frames[3] = {0, film->frame_count / 2, film->frame_count - 1};
-    zt_listener listener = {count_mistake, &reading->mistakes};
-    zt_arena arena = {0};
-    zt_status status = ZT_OK;
-    for (int i = 0; i < 3 && status == ZT_OK; i++) {
-        zt_scene scene;
-        zt_arena_reset(&arena);
-        status = zt_animation_freeze(&scene, animation, zt_rate_time(film->rate, frames[i]),
-                                     &arena, listener);
-        if (status == ZT_OK && i == 0) settle(animation, &scene);
-    }
-    zt_arena_free(&arena);
-    return status;
-}
-
 zt_status zt_constraints_close(zt_reading *reading) {
     zt_animation *animation = reading->animation;
     ZT_TRY(zt_things_close(reading));
@@ -452,6 +385,5 @@ zt_status zt_constraints_close(zt_reading *reading) {
         p->track.name = tracks[p->position].name;
         tracks[p->position] = p->track;
     }
-    ZT_TRY(zt_animation_sort(animation, (zt_cycle_listener){tell_cycle, &reading->mistakes}));
-    return reading->mistakes.count == 0 ? try_frames(reading) : ZT_OK;
+    return zt_trial(reading);
 }

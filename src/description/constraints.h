@@ -13,8 +13,9 @@ zt_status zt_constraint_read(bool *taken, zt_reading *reading, const zt_node *no
                              const zt_property *property, int32_t index, const char *thing);
 
 /* Once the animation has its tracks (zt_motion_close): finds what they refer to, puts them in
- * order, and tries them. ZT_EDESCRIPTION where what is wrong has been told, but not counted;
- * ZT_EUNSUPPORTED where there are expressions and nothing to evaluate them; ZT_EMEMORY. */
+ * order, and tries them at a few frames. ZT_EDESCRIPTION where that cannot be done, which is
+ * told and counted; ZT_EUNSUPPORTED where there are expressions and nothing to evaluate them;
+ * ZT_EMEMORY. */
 zt_status zt_constraints_close(zt_reading *reading);
 
 #endif

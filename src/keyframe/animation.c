@@ -63,6 +63,7 @@ static zt_status eval_track(double *value, bool *has_value, const zt_track *trac
         *has_value = zt_look_at_eval(value, &track->look_at, driven, scene);
         break;
     case ZT_TRACK_KIND_COUNT:
+        *has_value = false;
         break;
     }
     return ZT_OK;

@@ -131,26 +131,25 @@ static void follow_needs(walk *w, const graph *g, int32_t track, zt_cycle_listen
     }
 }
 
-static zt_status sort_graph(int32_t *order, graph *g, zt_cycle_listener cycles) {
-    size_t count = (size_t)g->animation->track_count;
+static zt_status sort_graph(zt_animation *animation, graph *g, zt_cycle_listener cycles) {
+    size_t count = (size_t)animation->track_count;
     walk w = {.chain = ZT_PUSH(&g->scratch, int32_t, count),
               .depth = ZT_PUSH(&g->scratch, int32_t, count),
               .next = ZT_PUSH(&g->scratch, int32_t, count),
-              .order = order};
-    if (!w.chain || !w.depth || !w.next) return ZT_EMEMORY;
+              .order = ZT_PUSH(&animation->arena, int32_t, count)};
+    if (!w.chain || !w.depth || !w.next || !w.order) return ZT_EMEMORY;
     for (size_t i = 0; i < count; i++) w.next[i] = g->first[i];
-    for (int32_t i = 0; i < g->animation->track_count; i++)
+    for (int32_t i = 0; i < animation->track_count; i++)
         if (w.depth[i] == 0) follow_needs(&w, g, i, cycles);
-    return w.cyclic ? ZT_EDESCRIPTION : ZT_OK;
+    if (w.cyclic) return ZT_EDESCRIPTION;
+    animation->order = w.order;
+    return ZT_OK;
 }
 
 zt_status zt_animation_sort(zt_animation *animation, zt_cycle_listener cycles) {
-    int32_t *order = ZT_PUSH(&animation->arena, int32_t, (size_t)animation->track_count);
-    if (!order) return ZT_EMEMORY;
     graph g;
     zt_status status = make_graph(&g, animation);
-    if (status == ZT_OK) status = sort_graph(order, &g, cycles);
-    if (status == ZT_OK) animation->order = order;
+    if (status == ZT_OK) status = sort_graph(animation, &g, cycles);
     free(g.needs);
     zt_arena_free(&g.scratch);
     return status;
