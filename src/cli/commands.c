@@ -25,8 +25,8 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                             "A quick movie: a quarter of the size, one sample a pixel",
                             "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},
     [ZT_COMMAND_CHECK] = {"check", "FILE", 1, false,
-                          "Tells the mistakes in FILE, or what the film holds", NULL, NULL,
-                          ANYWHERE},
+                          "Tells mistakes, what is probably not meant, what FILE holds", NULL,
+                          NULL, ANYWHERE},
     [ZT_COMMAND_EXPLAIN] = {"explain", "FILE NAME@TIME", 2, false,
                             "Tells what a property does at a frame or a time, and why: "
                             "ball.center@37",
