@@ -96,6 +96,7 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
     zt_status status = read_pattern(images, target);
     if (status == ZT_OK && !images->after && format->frame_count > 1)
         status = refuse_several(images);
+    if (status == ZT_OK) status = zt_image_file_ready(listener);
     if (status == ZT_OK) status = probe(target, listener);
     if (status == ZT_OK)
         *state = images;

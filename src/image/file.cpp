@@ -17,12 +17,10 @@
 
 extern "C" {
 #include "base/diag.h"
+#include "base/module.h"
 #include "base/text.h"
 #include "image/develop.h"
 }
-
-const char *const zt_image_file_endings[] = {".png", ".exr",  ".tif", ".tiff",
-                                             ".jpg", ".jpeg", nullptr};
 
 namespace {
 
@@ -173,17 +171,17 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     return ZT_OK;
 }
 
-} // namespace
-
-extern "C" zt_status zt_image_file_write(const zt_image *image, zt_view view, const char *path,
-                                         const char *name, zt_listener listener) {
+zt_status write_guarded(const zt_image *image, zt_view view, const char *path, const char *name,
+                        zt_listener listener) {
     return without_exceptions(listener, "write", path,
                               [&] { return write(image, view, path, name, listener); });
 }
 
-extern "C" zt_status zt_image_file_read(zt_image **image, const char *path,
-                                        zt_listener listener) {
-    *image = nullptr;
+zt_status read_guarded(zt_image **image, const char *path, zt_listener listener) {
     return without_exceptions(listener, "read", path,
                               [&] { return read(image, path, listener); });
 }
+
+} // namespace
+
+ZT_MODULE_DOOR(zt_image_file_door, image_file) = {write_guarded, read_guarded};

@@ -1,4 +1,5 @@
-/* Image files by any format that OpenImageIO knows. The door to OpenImageIO. */
+/* Image files by any format that OpenImageIO knows. The door to it is a module (base/module.h):
+ * OpenImageIO brings some 250 libraries, and films without image files do without them. */
 #ifndef ZT_IMAGE_FILE_H
 #define ZT_IMAGE_FILE_H
 
@@ -14,6 +15,10 @@ extern "C" {
 /* The endings of the formats that can be written, each with its dot; NULL after the last. */
 extern const char *const zt_image_file_endings[];
 
+/* Loads the module, if that has not been done: so that a missing one is told before there is
+ * anything to write. ZT_EUNSUPPORTED after telling. */
+zt_status zt_image_file_ready(zt_listener listener);
+
 /* Writes R, G and B of `image` to `path` in the format that the ending of `name` asks for (the
  * two differ while a file is written aside): 8 bits developed by the view for PNG and JPEG, 16
  * bits developed for TIFF, half floats of linear light for EXR (what a half float cannot hold
@@ -26,6 +31,13 @@ zt_status zt_image_file_write(const zt_image *image, zt_view view, const char *p
  * ZT_EFILE after telling why; pictures of more than 2^28 pixels are refused, whatever the file
  * claims. */
 zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener listener);
+
+/* The module's table: what the two functions above are made of. */
+typedef struct zt_image_file_door {
+    zt_status (*write)(const zt_image *image, zt_view view, const char *path, const char *name,
+                       zt_listener listener);
+    zt_status (*read)(zt_image **image, const char *path, zt_listener listener);
+} zt_image_file_door;
 
 #ifdef __cplusplus
 }
