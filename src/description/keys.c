@@ -151,9 +151,11 @@ static zt_status gather(reader *r) {
 /* ---- what is written beside a value ---------------------------------------------------------
  */
 
+/* Nothing is told where the kind of the way is not known. */
 static void not_of_this_way(reader *r, const zt_node *node, const char *name,
-                            const char *kinds) {
+                            zt_curve_kind kind, const char *kinds) {
     r->good = false;
+    if (kind == ZT_CURVE_KIND_COUNT) return;
     zt_mistake(&r->reading->mistakes, &node->place, "\"%s\" belongs to %s curves", name, kinds);
 }
 
@@ -170,7 +172,7 @@ static void read_tension(reader *r, int32_t k, const zt_fields *fields) {
         const zt_node *node = zt_field(fields, names[i]);
         if (!node) continue;
         if (key->kind != ZT_CURVE_TCB && kind_before(r, k) != ZT_CURVE_TCB)
-            not_of_this_way(r, node, names[i], "tcb");
+            not_of_this_way(r, node, names[i], key->kind, "tcb");
         else
             r->good &= zt_read_number(values[i], &r->reading->mistakes, node, names[i],
                                       (zt_range){-1, 1, NULL});
@@ -204,7 +206,7 @@ static zt_status read_parts(reader *r, int32_t k) {
         w->in = zt_field(&fields, "in");
         w->out = zt_field(&fields, "out");
         r->good &= good && w->value;
-        if (curve) r->good &= zt_suits(r->reading, curve, way, r->said->property);
+        if (curve && good) r->good &= zt_suits(r->reading, curve, way, r->said->property);
     }
     r->keys[k] = (zt_key){.time_s = w->time_s, .kind = way.kind, .ease = way.ease};
     if (fields.mapping) read_tension(r, k, &fields);
@@ -285,7 +287,7 @@ static zt_status read_handle(reader *r, int32_t k, bool leaving, zt_curve_space 
         read_scaled(leaving ? &key->after : &key->before, room,
                     r->change.scale * r->change.speed, r, node, name, kind, space);
     else
-        not_of_this_way(r, node, name, "bezier and hermite");
+        not_of_this_way(r, node, name, kind, "bezier and hermite");
     return ZT_OK;
 }
 

@@ -183,11 +183,11 @@ static zt_status read_variables(replacing *r, const zt_node *mapping) {
 zt_status zt_variables_apply(zt_reading *reading, const zt_node *root) {
     replacing r = {.reading = reading};
     if (root->kind != ZT_NODE_MAPPING) return ZT_OK;
-    const zt_node *mapping = zt_field(&(zt_fields){.mapping = root}, "variables");
-    if (mapping && mapping->kind == ZT_NODE_MAPPING)
-        ZT_TRY(read_variables(&r, mapping));
-    else if (mapping && !zt_node_empty(mapping))
-        zt_expected(&reading->mistakes, mapping, "variables", "a mapping of names to values");
+    const zt_node *variables = zt_field(&(zt_fields){.mapping = root}, "variables");
+    if (variables && variables->kind == ZT_NODE_MAPPING)
+        ZT_TRY(read_variables(&r, variables));
+    else if (variables && !zt_node_empty(variables))
+        zt_expected(&reading->mistakes, variables, "variables", "a mapping of names to values");
     for (int i = 0; i < reading->overrides.count; i++) {
         const zt_node **value = &reading->overrides.values[i];
         if (*value) ZT_TRY(replace_value(value, &r, 1, false));

@@ -90,7 +90,7 @@ zt_status zt_read_ease(const zt_ease **ease, bool *good, zt_reading *reading,
 
 zt_status zt_read_way(zt_way *way, bool *good, zt_reading *reading, const zt_node *node,
                       const char *what) {
-    *way = (zt_way){.kind = ZT_CURVE_LINEAR};
+    *way = (zt_way){.kind = ZT_CURVE_KIND_COUNT};
     *good = zt_read_text(&reading->mistakes, node, what);
     if (!*good) return ZT_OK;
     for (int i = 0; i < ZT_CURVE_KIND_COUNT; i++)
@@ -98,7 +98,9 @@ zt_status zt_read_way(zt_way *way, bool *good, zt_reading *reading, const zt_nod
             way->kind = (zt_curve_kind)i;
             return ZT_OK;
         }
-    return read_ease(&way->ease, good, reading, node, what, true);
+    ZT_TRY(read_ease(&way->ease, good, reading, node, what, true));
+    if (*good) way->kind = ZT_CURVE_LINEAR;
+    return ZT_OK;
 }
 
 /* ---- ends and springs -----------------------------------------------------------------------

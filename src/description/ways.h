@@ -16,7 +16,7 @@ typedef struct zt_eases {
 
 /* How a curve goes from one key to the next. */
 typedef struct zt_way {
-    zt_curve_kind kind;
+    zt_curve_kind kind;  /* ZT_CURVE_KIND_COUNT where something is wrong with its word */
     const zt_ease *ease; /* or NULL */
 } zt_way;
 
