@@ -14,6 +14,10 @@
 
 #include "descriptions.h"
 
+#if defined __SANITIZE_ADDRESS__ /* has allocations of its own */
+int main(void) { return 77; }
+#else
+
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *old, size_t size);
@@ -80,3 +84,5 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_steady_state)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
+
+#endif
