@@ -44,8 +44,8 @@ typedef struct zt_override {
 
 /* Reads the description at `path` with all that it refers to. All mistakes are told before
  * giving up. ZT_EDESCRIPTION for mistakes, ZT_EFILE when the file itself cannot be read. The
- * caller frees the animation. `overrides` may be NULL where there are none; of two with the same
- * name the last one counts. */
+ * caller frees the animation. `overrides` may be NULL where there are none; of two with the
+ * same name the last one counts. */
 zt_status zt_animation_read(zt_animation **animation, const char *path,
                             const zt_override *overrides, int override_count,
                             zt_listener listener);
@@ -59,7 +59,7 @@ typedef struct zt_movement {
     const char *name;   /* "ball.center", "camera.fov"; owned by the animation */
     const char *driver; /* of keys "smooth" or what else their curve is; or else "expression",
                            "follow", "orbit", "offset", "look_at" */
-    int key_count;          /* 0 where it has no keys */
+    int key_count;      /* 0 where it has no keys */
     double first_s, last_s; /* seconds: of the first and last key, or of the begin and end of
                                what is followed; else 0 */
 } zt_movement;

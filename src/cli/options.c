@@ -98,7 +98,7 @@ static int take_option(arguments *sorted, int i, char **argv, zt_report *report)
         return 0;
     }
     sorted->values[option] = row->example ? value : "";
-    bool good = option != ZT_OPTION_SET || take_set(sorted->options, value, report);
+    bool good = option != ZT_OPTION_SET || (value && take_set(sorted->options, value, report));
     return good ? i : 0;
 }
 

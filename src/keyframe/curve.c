@@ -232,7 +232,7 @@ void zt_curve_eval(double *value, const zt_curve *curve, double time_s) {
                (size_t)curve->width * sizeof *value);
         return;
     }
-    double point[ZT_VALUE_WIDTH_MAX];
+    double point[ZT_VALUE_WIDTH_MAX] = {0}; /* wide enough for all spaces */
     if (curve->spring)
         zt_curve_spring_eval(point, curve, spot.key, spot.time_s);
     else

@@ -149,7 +149,9 @@ static void end_leg(double *leg, const zt_curve *curve, int32_t way, bool at_las
             to = controls;
     }
     if (!zt_curve_is_on_sphere(curve)) {
-        for (int32_t c = 0; c < width; c++) leg[c] = (controls ? 3 : 1) * (to[c] - from[c]);
+        /* Ways of these kinds have controls, which the analyzer cannot know. */
+        for (int32_t c = 0; c < width; c++)
+            leg[c] = (controls ? 3 : 1) * (to[c] - from[c]); /* NOLINT(*NullDereference) */
         return;
     }
     vec3 v;
