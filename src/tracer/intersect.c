@@ -14,22 +14,22 @@ typedef struct bundle {
     zt_box origins, directions;
 } bundle;
 
-/* Floats read as integers, and numbered so that the order of the integers is that of the
+/* The bits of a float as an integer, numbered so that the order of the integers is that of the
  * floats: whose least and greatest a compiler finds many at a time without leave to reorder
- * floats. */
-typedef int32_t __attribute__((may_alias)) float_bits;
-static inline int32_t in_order(int32_t bits) { return bits ^ ((bits >> 31) & INT32_MAX); }
+ * floats. in_order is its own inverse. */
+static inline int32_t in_order(int32_t bits) { return bits ^ (bits < 0 ? INT32_MAX : 0); }
 
 static void range(real *low, real *high, const real *values, int count) {
-    static_assert(sizeof(real) == sizeof(float_bits), "a real is a float");
-    const float_bits *bits = (const float_bits *)values;
+    static_assert(sizeof(real) == sizeof(int32_t), "a real is a float");
     int32_t least = INT32_MAX, greatest = INT32_MIN;
     for (int i = 0; i < count; i++) {
-        int32_t number = in_order(bits[i]);
+        int32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        int32_t number = in_order(bits);
         least = number < least ? number : least;
         greatest = number > greatest ? number : greatest;
     }
-    least = in_order(least); /* its own inverse */
+    least = in_order(least);
     greatest = in_order(greatest);
     memcpy(low, &least, sizeof *low);
     memcpy(high, &greatest, sizeof *high);
