@@ -71,6 +71,20 @@ static void a_short_dip(void **state) {
     assert_says(&t, "ball.radius reaches -0.1 at");
 }
 
+/* A line that goes on beyond what a number can hold is kept at the largest, and told. */
+static void overflow(void **state) {
+    (void)state;
+    zt_animation *film = small_film(100, (zt_rate){1, 1});
+    const double values[] = {0, 1e307};
+    zt_key keys[2] = {key(0, &values[0], ZT_CURVE_LINEAR), key(1, &values[1], ZT_CURVE_LINEAR)};
+    add_keys(film, "ball.radius",
+             (zt_curve_spec){.key_count = 2, .keys = keys, .after = ZT_END_LINEAR});
+    told t = advice_on(film);
+    assert_int_equal(t.warning_count, 2); /* the camera is inside of such a ball, too */
+    assert_says(&t, "ball.radius becomes too large for a number at");
+    assert_says(&t, "it is kept at 1.798e+308");
+}
+
 /* Movement between two equal keys is told once, at the first of them; ways that stand still
  * there are not, nor are keys that differ. */
 static void equal_keys(void **state) {
@@ -226,6 +240,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dip_between_frames),
         cmocka_unit_test(a_short_dip),
+        cmocka_unit_test(overflow),
         cmocka_unit_test(equal_keys),
         cmocka_unit_test(overshoot),
         cmocka_unit_test(silence),

@@ -1,5 +1,6 @@
 #include "keyframe/advice.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "keyframe/curve_inside.h"
@@ -122,6 +123,29 @@ static void advise_range(const zt_animation *animation, const zt_track *track,
                unit, w.value < w.bound ? "least" : "most");
 }
 
+/* ---- values too large for a number ---------------------------------------------------------
+ */
+
+/* Curves keep to finite numbers (zt_curve_finite); told where one had to. */
+static void advise_overflow(const zt_animation *animation, const zt_track *track,
+                            zt_listener listener) {
+    if (track->curve.clipped || stays_between_keys(&track->curve))
+        return; /* told, or cannot be */
+    const zt_film *film = &animation->film;
+    int64_t count = zt_advice_moment_count(film, ZT_ADVICE_MOMENTS_MAX);
+    for (int64_t i = 0; i < count; i++) {
+        double value[ZT_VALUE_WIDTH_MAX], time_s = zt_advice_moment_s(film, i, count);
+        zt_curve_eval(value, &track->curve, time_s);
+        for (int32_t c = 0; c < track->curve.width; c++) {
+            if (fabs(value[c]) < DBL_MAX) continue;
+            zt_tell_at(listener, ZT_WARNING, place_at(track, time_s),
+                       "%s becomes too large for a number at %s; it is kept at %.4g",
+                       track->name, zt_moment_in_words(film->rate, time_s).text, value[c]);
+            return;
+        }
+    }
+}
+
 /* ---- movement between two equal keys -------------------------------------------------------
  */
 
@@ -171,6 +195,7 @@ zt_status zt_animation_advise(const zt_animation *animation, zt_listener listene
         const zt_track *track = &animation->tracks[i];
         if (track->kind != ZT_TRACK_CURVE) continue;
         advise_range(animation, track, listener);
+        advise_overflow(animation, track, listener);
         advise_equal_keys(track, listener);
     }
     return zt_advice_camera(animation, listener);
