@@ -152,11 +152,34 @@ static void mesh_corners(void **state) {
     assert_vec(zt_mesh_corner(&mesh, 1, 1), (vec3){1e9, 0.25, -1});
 }
 
+/* A cube: once around each point within, not around those outside, also close to a side; a
+ * third of that where four of the six sides are gone. */
+static void test_winding(void **state) {
+    (void)state;
+    static const float corners[8 * 3 + 1] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
+                                             -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
+    static const uint32_t sides[12 * 3] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6,
+                                           0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7,
+                                           0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    zt_mesh cube = {.origin = {10, 0, 0},
+                    .positions = corners,
+                    .triangles = sides,
+                    .vertex_count = 8,
+                    .triangle_count = 12};
+    const vec3 inside[] = {{10, 0, 0}, {10.9999, 0.5, -0.9999}, {9.2, 0.3, 0.1}};
+    const vec3 outside[] = {{0, 0, 0}, {11.0001, 0.5, 0}, {10, 0, 1000}, {12, 2, 2}};
+    for (int i = 0; i < 3; i++) assert_float_equal(zt_mesh_winding(&cube, inside[i]), 1, 1e-9);
+    for (int i = 0; i < 4; i++) assert_float_equal(zt_mesh_winding(&cube, outside[i]), 0, 1e-9);
+    cube.triangle_count = 4; /* two opposite sides of six */
+    assert_float_equal(zt_mesh_winding(&cube, inside[0]), 2.0 / 6, 1e-9);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(groups_within_groups), cmocka_unit_test(camera_by_rotation),
-        cmocka_unit_test(camera_by_aim),        cmocka_unit_test(camera_rolled),
-        cmocka_unit_test(camera_without_a_way), cmocka_unit_test(mesh_corners),
+        cmocka_unit_test(test_winding),       cmocka_unit_test(groups_within_groups),
+        cmocka_unit_test(camera_by_rotation), cmocka_unit_test(camera_by_aim),
+        cmocka_unit_test(camera_rolled),      cmocka_unit_test(camera_without_a_way),
+        cmocka_unit_test(mesh_corners),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,10 @@
 enum {
     ZT_ADVICE_MOMENTS_MAX = 10000,
     ZT_ADVICE_MOMENTS_PER_FRAME = 4,
-    ZT_ADVICE_WORK_MAX = 4 * 1000 * 1000 /* objects and tracks frozen while looking at scenes */
+    ZT_ADVICE_WORK_MAX =
+        4 * 1000 * 1000, /* objects and tracks frozen while looking at scenes */
+    ZT_ADVICE_TRIANGLES_MAX =
+        20 * 1000 * 1000 /* asked whether the camera is within their mesh */
 };
 
 /* The moments at which a film is looked at: all frames and some between, or fewer, evenly

@@ -13,6 +13,7 @@ static const double sine_min = 0.0087;
 typedef struct findings {
     double along_up_s, at_itself_s; /* the first moment; NAN for never */
     double *inside_s, *outside_s;   /* per object: the first and the last moment within it */
+    int64_t triangles_left;         /* that may still be looked at for being inside of meshes */
     vec3 ahead, aside;              /* of the moment before: the view, and it without its up */
 } findings;
 
@@ -49,26 +50,49 @@ static void look_along(findings *f, const zt_camera *camera, double time_s) {
     f->aside = aside;
 }
 
+/* Whether a point of the mesh's space is within the mesh. */
+static bool within_mesh(findings *f, const zt_mesh *mesh, vec3 point) {
+    bool in_bounds = point.x > mesh->low.x && point.x < mesh->high.x && point.y > mesh->low.y &&
+                     point.y < mesh->high.y && point.z > mesh->low.z && point.z < mesh->high.z;
+    if (!in_bounds || f->triangles_left < mesh->triangle_count) return false;
+    f->triangles_left -= mesh->triangle_count;
+    return fabs(zt_mesh_winding(mesh, point)) > 0.5;
+}
+
+/* Whether the eye is within an object; a flattened one has no inside. */
+static bool within(findings *f, const zt_scene *scene, const zt_object *object,
+                   const xform *world) {
+    xform place = *world;
+    if (object->shape == ZT_SHAPE_MESH) {
+        const zt_placement *p = &object->placement;
+        xform own = xform_place(p->position, p->rotation, p->scale);
+        place = xform_mul(world, &own);
+    }
+    xform inverse = xform_inverse(&place);
+    vec3 eye = xform_point(&inverse, scene->camera.position);
+    if (object->shape == ZT_SHAPE_MESH)
+        return within_mesh(f, &scene->meshes[object->mesh], eye);
+    return vec3_length(vec3_sub(eye, object->sphere.center)) < object->sphere.radius;
+}
+
 static void look_around(findings *f, const zt_scene *scene, xform *worlds, double time_s) {
     zt_scene_worlds(worlds, scene);
     for (int32_t i = 0; i < scene->object_count; i++) {
         const zt_object *object = &scene->objects[i];
-        if (object->shape != ZT_SHAPE_SPHERE) continue;
-        xform inverse = xform_inverse(&worlds[i]);
-        vec3 eye = xform_point(&inverse, scene->camera.position);
-        double distance = vec3_length(vec3_sub(eye, object->sphere.center));
-        if (!(distance < object->sphere.radius)) continue;
+        if (object->shape != ZT_SHAPE_SPHERE && object->shape != ZT_SHAPE_MESH) continue;
+        if (!within(f, scene, object, &worlds[i])) continue;
         if (isnan(f->inside_s[i])) f->inside_s[i] = time_s;
         f->outside_s[i] = time_s;
     }
 }
 
-static const char *sphere_name(const zt_animation *animation, int32_t object) {
+static const char *object_name(const zt_animation *animation, int32_t object) {
+    bool mesh = animation->rest.objects[object].shape == ZT_SHAPE_MESH;
+    zt_owner owner = mesh ? ZT_OWNER_MESH : ZT_OWNER_SPHERE;
     for (int32_t i = 0; i < animation->thing_count; i++)
-        if (animation->things[i].owner == ZT_OWNER_SPHERE &&
-            animation->things[i].index == object)
+        if (animation->things[i].owner == owner && animation->things[i].index == object)
             return animation->things[i].name;
-    return "a sphere";
+    return mesh ? "a mesh" : "a sphere";
 }
 
 static void tell(const findings *f, const zt_animation *animation, zt_listener listener) {
@@ -86,7 +110,7 @@ static void tell(const findings *f, const zt_animation *animation, zt_listener l
     for (int32_t i = 0; i < animation->rest.object_count; i++) {
         if (isnan(f->inside_s[i])) continue;
         zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s from %s to %s",
-                   sphere_name(animation, i), zt_moment_in_words(rate, f->inside_s[i]).text,
+                   object_name(animation, i), zt_moment_in_words(rate, f->inside_s[i]).text,
                    zt_moment_in_words(rate, f->outside_s[i]).text);
     }
 }
@@ -114,7 +138,8 @@ static zt_status look(findings *f, const zt_animation *animation, zt_arena *aren
 zt_status zt_advice_camera(const zt_animation *animation, zt_listener listener) {
     size_t count = (size_t)animation->rest.object_count;
     zt_arena own = {0}, frame = {0};
-    findings f = {.along_up_s = NAN,
+    findings f = {.triangles_left = ZT_ADVICE_TRIANGLES_MAX,
+                  .along_up_s = NAN,
                   .at_itself_s = NAN,
                   .inside_s = ZT_PUSH(&own, double, count),
                   .outside_s = ZT_PUSH(&own, double, count)};

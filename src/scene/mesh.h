@@ -24,4 +24,11 @@ static inline vec3 zt_mesh_corner(const zt_mesh *mesh, int32_t triangle, int cor
     return vec3_add(mesh->origin, (vec3){(double)p[0], (double)p[1], (double)p[2]});
 }
 
+/* How often the surface winds around a point of the mesh's space: 1 within a closed mesh and 0
+ * outside, shares of it where the mesh has holes; negative where it is wound inside out. The
+ * sum of the solid angles of all triangles (van Oosterom and Strackee, "The solid angle of a
+ * plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983; Jacobson, Kavan and Sorkine-Hornung,
+ * "Robust inside-outside segmentation using generalized winding numbers", 2013). */
+double zt_mesh_winding(const zt_mesh *mesh, vec3 point);
+
 #endif
