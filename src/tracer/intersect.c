@@ -96,7 +96,8 @@ static void intersect_analytic(zt_batch *rays, const bundle *b, const zt_tracer 
     int count = zt_batch_padded(rays->count);
     for (int32_t index = 0; index < tracer->primitive_count; index++) {
         const zt_primitive *p = &tracer->primitives[index];
-        bool bounded = p->kind != ZT_PRIMITIVE_PLANE && p->kind != ZT_PRIMITIVE_MESH;
+        /* Not ellipsoids: how far their roundings reach depends on how stretched they are. */
+        bool bounded = p->kind == ZT_PRIMITIVE_SPHERE || p->kind == ZT_PRIMITIVE_TRIANGLE;
         if (bounded && !bundle_meets(b, &p->box)) continue;
         switch (p->kind) {
         case ZT_PRIMITIVE_PLANE:
@@ -165,8 +166,9 @@ static inline void meet_box(lanes *restrict l, const zt_box box) {
         real z1 = (box.high.z + room - l->oz[j]) * l->kz[j];
         real enter = real_max(real_max(real_min(x0, x1), real_min(y0, y1)), real_min(z0, z1));
         real leave = real_min(real_min(real_max(x0, x1), real_max(y0, y1)), real_max(z0, z1));
-        l->meets[j] |=
-            !(leave < 0) & !(enter * less > leave * more) & !(enter * less > l->t[j] * more);
+        l->meets[j] |= !(leave < 0) & !(enter * less > leave * more) &
+                       !(enter * less > l->t[j] * more) &
+                       !(l->t[j] <= 0); /* such a ray looks nowhere */
     }
 }
 

@@ -39,7 +39,7 @@ typedef struct zt_primitive {
     zt_primitive_kind kind;
     int32_t object; /* its index in the scene */
     int32_t mesh;   /* of a mesh: the index in the scene, else -1 */
-    zt_box box;     /* around spheres, ellipsoids and triangles */
+    zt_box box;     /* around spheres and triangles */
     union {
         struct {
             real3 normal; /* unit */

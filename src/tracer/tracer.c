@@ -25,10 +25,6 @@ static double similarity_scale(const xform *m) {
     return similar ? sqrt(xx) : 0;
 }
 
-static zt_box box_around(vec3 center, vec3 reach) {
-    return (zt_box){to_real3(vec3_sub(center, reach)), to_real3(vec3_add(center, reach))};
-}
-
 /* Each of the following makes one primitive and its surface; false where there is nothing to
  * hit. `world` takes the object's numbers to the world relative to the camera. */
 
@@ -65,7 +61,6 @@ static bool prepare_ellipsoid(zt_primitive *primitive, zt_surface *surface,
     vec3 reach = {vec3_length((vec3){w->x.x, w->y.x, w->z.x}) * sphere->radius,
                   vec3_length((vec3){w->x.y, w->y.y, w->z.y}) * sphere->radius,
                   vec3_length((vec3){w->x.z, w->y.z, w->z.z}) * sphere->radius};
-    primitive->box = box_around(center, reach);
     surface->extent = (real)(vec3_max_abs(center) + vec3_max_abs(reach));
     return true;
 }
@@ -80,7 +75,9 @@ static bool prepare_sphere(zt_primitive *primitive, zt_surface *surface,
     primitive->kind = ZT_PRIMITIVE_SPHERE;
     primitive->sphere.center = to_real3(center);
     primitive->sphere.radius = (real)radius;
-    primitive->box = box_around(center, (vec3){radius, radius, radius});
+    vec3 reach = {radius, radius, radius};
+    primitive->box =
+        (zt_box){to_real3(vec3_sub(center, reach)), to_real3(vec3_add(center, reach))};
     surface->bend = (real)(1 / radius);
     surface->center = primitive->sphere.center;
     surface->level = primitive->sphere.radius;
