@@ -44,6 +44,7 @@ zt_status zt_renderer_sequence(zt_renderer *r, int64_t first, int64_t last, zt_o
         status = zt_image_create(&images[i], r->format.width, r->format.height);
     if (status == ZT_OK) status = render_and_write(r, first, last, images, &w, writer, watcher);
     zt_errand_close(&writer); /* waits for what is still being written */
+    if (status == ZT_ESTOPPED && w.status != ZT_OK) status = w.status;
     zt_image_free(&images[0]);
     zt_image_free(&images[1]);
     return status;
