@@ -105,7 +105,7 @@ static zt_status start_device(zt_meshes *m) {
 static zt_status build_hull(zt_meshes *m, int32_t index) {
     const zt_mesh *mesh = &m->meshes[index];
     int32_t *order = malloc((size_t)mesh->triangle_count * sizeof *order + 1);
-    m->hulls[index] = malloc(sizeof **m->hulls);
+    if (!m->hulls[index]) m->hulls[index] = malloc(sizeof **m->hulls);
     bool room = order && m->hulls[index];
     if (room) zt_hull_build(m->hulls[index], mesh, order);
     free(order);
