@@ -1,5 +1,6 @@
-# Folders are floors: fails on an include that looks up, on a foreign library's header outside of
-# its one door, and on a program that sees more than the public headers.
+# Folders are floors: fails on an include that looks up, in a source or in a public header, on a
+# foreign library's header outside of its one door, and on a program that sees more than the
+# public headers.
 # Run as: cmake -DROOT=<the project> -P tests/floors.cmake
 
 cmake_minimum_required(VERSION 3.25)
@@ -40,8 +41,7 @@ set(doors
     "embree|tracer/meshes.c"
     "libav|encode/video.c"
     "libsw|encode/video.c"
-    "librsvg/|encode/raster.c"
-    "SDL|cli/preview.c")
+    "librsvg/|encode/raster.c")
 
 # Headers of C and POSIX that any file may include, and those of C++, which have no ending.
 set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
@@ -49,24 +49,32 @@ signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strin
 unistd|sys/[a-z]+)(\\.h)?$")
 
 set(mistakes "")
-file(GLOB_RECURSE files RELATIVE ${ROOT}/src ${ROOT}/src/*.c ${ROOT}/src/*.h ${ROOT}/src/*.cpp)
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/*)
+list(REMOVE_ITEM files src/README.md)
 list(LENGTH files file_count)
 if(file_count EQUAL 0)
-  message(FATAL_ERROR "no sources below ${ROOT}/src")
+  message(FATAL_ERROR "no sources below ${ROOT}")
 endif()
 
 foreach(file IN LISTS files)
-  string(REGEX REPLACE "/.*" "" folder ${file})
+  set(folder "")
+  if(file MATCHES "^include/zoetrope/([a-z]+)\\.h$")
+    set(folder "${header_${CMAKE_MATCH_1}}")
+  elseif(file MATCHES "^src/([^/]+)/")
+    set(folder ${CMAKE_MATCH_1})
+  endif()
   if(NOT folder IN_LIST folders)
     list(APPEND mistakes "${file}: its folder is no floor")
     continue()
   endif()
   set(allowed ${folder} ${sees_${folder}})
-  file(STRINGS ${ROOT}/src/${file} lines REGEX "^[ \t]*#[ \t]*include")
+  file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#.*include")
   foreach(line IN LISTS lines)
     string(REGEX MATCH "[<\"]([^>\"]+)[>\"]" _ "${line}")
     set(name "${CMAKE_MATCH_1}")
-    if(line MATCHES "\"")
+    if(name MATCHES "\\.\\.")
+      list(APPEND mistakes "${file} includes ${name}, which is not written from the root")
+    elseif(line MATCHES "\"")
       string(REGEX REPLACE "/.*" "" target "${name}")
       if(NOT target IN_LIST allowed)
         list(APPEND mistakes "${file} includes \"${name}\", which ${folder} may not see")
@@ -92,7 +100,7 @@ foreach(file IN LISTS files)
       endforeach()
       if(NOT door)
         list(APPEND mistakes "${file} includes <${name}>, a foreign library without a door")
-      elseif(NOT door STREQUAL file)
+      elseif(NOT "src/${door}" STREQUAL file)
         list(APPEND mistakes "${file} includes <${name}>, whose one door is ${door}")
       endif()
     endif()
