@@ -53,9 +53,10 @@ static inline void assert_near(double found, double expected, double tolerance) 
     if (!(fabs(found - expected) <= tolerance)) fail_msg("%.17g is not %.17g", found, expected);
 }
 
-/* Rising times with spacings between the two. */
+/* Rising times with spacings between the two. They begin at any magnitude, since the smallest
+ * spacings exist near zero only. */
 static inline void draw_times(draw *d, double *times, int count, double low, double high) {
-    times[0] = draw_between(d, -1, 1) * high;
+    times[0] = draw_between(d, -1, 1) * draw_magnitude(d, low, high);
     for (int k = 1; k < count; k++) {
         times[k] = times[k - 1] + draw_magnitude(d, low, high);
         if (!(times[k] > times[k - 1])) times[k] = nextafter(times[k - 1], INFINITY);

@@ -61,6 +61,78 @@ static void slerp_is_exact(void **state) {
     assert_true(worst_length <= 4);
 }
 
+/* ---- the arcs of smooth rotations ----------------------------------------------------------
+ */
+
+static real4 real4_mul(real4 a, real4 b) {
+    return (real4){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+                   a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                   a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                   a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+/* The unit quaternion of a half turn that is the vector part of v. */
+static real4 real4_exp(real4 v) {
+    real angle = REAL(sqrt)(real4_dot(v, v));
+    real4 q = real4_scale(v, angle > 0 ? REAL(sin)(angle) / angle : 1);
+    q.w = REAL(cos)(angle);
+    return q;
+}
+
+static real4 real4_log(real4 q) {
+    real4 v = {0, q.x, q.y, q.z};
+    real sine = REAL(sqrt)(real4_dot(v, v));
+    return sine > 0 ? real4_scale(v, REAL(atan2)(sine, q.w) / sine) : v;
+}
+
+/* The cubic Bezier curve of Kim, Kim and Shin from a to b. */
+static real4 arc_reference(real4 a, real4 b, vec3 leave, vec3 arrive, real u) {
+    real4 first = {0, (real)leave.x / 3, (real)leave.y / 3, (real)leave.z / 3};
+    real4 last = {0, (real)arrive.x / 3, (real)arrive.y / 3, (real)arrive.z / 3};
+    real4 whole = real4_mul((real4){a.w, -a.x, -a.y, -a.z}, b);
+    real4 middle = real4_log(real4_mul(real4_mul(real4_exp(real4_scale(first, -1)), whole),
+                                       real4_exp(real4_scale(last, -1))));
+    real v = 1 - u;
+    real4 q = real4_mul(a, real4_exp(real4_scale(first, 1 - v * v * v)));
+    q = real4_mul(q, real4_exp(real4_scale(middle, 3 * u * u - 2 * u * u * u)));
+    return real4_mul(q, real4_exp(real4_scale(last, u * u * u)));
+}
+
+/* Arcs against a reference of higher precision, for turns from 1e-12 to pi - 1e-9 that begin
+ * and end at up to twice their mean speed, askew. */
+static void arcs_are_exact(void **state) {
+    (void)state;
+    if (!REAL_IS_QUAD) skip();
+    draw d = {9, 0};
+    double worst_angle = 0, worst_length = 0;
+    for (int round = 0; round < 20000; round++) {
+        quat a = draw_rotation(&d), drawn = draw_rotation(&d);
+        double separation = draw_magnitude(&d, 1e-12, pi / 2);
+        if (round % 2) separation = pi - draw_magnitude(&d, 1e-9, pi / 2);
+        vec3 step =
+            vec3_scale(vec3_normalize((vec3){drawn.x, drawn.y, drawn.z}), separation / 2);
+        quat b = quat_mul(a, zt_rotation_exp(step));
+        vec3 speeds[2];
+        for (int i = 0; i < 2; i++) {
+            drawn = draw_rotation(&d);
+            vec3 askew = vec3_scale((vec3){drawn.x, drawn.y, drawn.z}, separation / 8);
+            speeds[i] = vec3_add(vec3_scale(step, draw_between(&d, 0, 1.75)), askew);
+        }
+        double u = round % 7 ? draw_unit(&d) : draw_magnitude(&d, 1e-16, 1);
+        zt_rotation_arc arc = zt_rotation_arc_make(a, b, speeds[0], speeds[1]);
+        quat q = zt_rotation_arc_eval(&arc, a, u);
+        real4 expected =
+            arc_reference(real4_unit(exact(a)), real4_unit(exact(b)), speeds[0], speeds[1], u);
+        double angle = (double)real4_angle(real4_unit(exact(q)), expected);
+        worst_angle = fmax(worst_angle, angle);
+        worst_length = fmax(worst_length, length_error_ulp(q));
+    }
+    printf("  arcs: worst angle error %.2g, worst length error %.2g ulp\n", worst_angle,
+           worst_length);
+    assert_true(worst_angle <= 1e-12);
+    assert_true(worst_length <= 4);
+}
+
 /* ---- as they are written -------------------------------------------------------------------
  */
 
@@ -347,6 +419,7 @@ int main(void) {
         cmocka_unit_test(angles_between),
         cmocka_unit_test(velocities),
         cmocka_unit_test(slerp_is_exact),
+        cmocka_unit_test(arcs_are_exact),
         cmocka_unit_test(the_short_way),
         cmocka_unit_test(half_turns),
         cmocka_unit_test(one_axis_is_a_smooth_angle),
