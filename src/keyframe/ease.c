@@ -84,8 +84,7 @@ static double steps(const zt_ease *ease, double u) {
 }
 
 /* As "CSS Easing Functions Level 2" has it: of stops at the same time the last one counts at
- * that time; before the first and after the last stop their lines
- * go on. */
+ * that time; before the first and after the last stop their lines go on. */
 static double stops(const zt_ease *ease, double u) {
     const zt_ease_stop *stop = ease->stops;
     int32_t low = -1, high = ease->stop_count;
