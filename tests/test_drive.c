@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include <cmocka.h>
+#include <zoetrope/explain.h>
 
 #include "base/clock.h"
 #include "base/pool.h"
@@ -103,6 +104,31 @@ static void expressions_in_range(void **state) {
     assert_vec(frozen(animation, 0.25, &arena).objects[0].sphere.center, 0.75, 0, 0);
     assert_vec(frozen(animation, 3, &arena).objects[0].sphere.center, 0, 0, 0);
     zt_arena_free(&arena);
+    zt_animation_free(&animation);
+}
+
+/* The velocity of an expression is that just after the moment: it may jump there, or have no
+ * value before. */
+static void velocity_of_expressions(void **state) {
+    (void)state;
+    const struct {
+        const char *name;
+        double time_s, velocity;
+    } cases[] = {{"a.radius", 0, 3}, {"b.radius", 1, 2}, {"b.radius", 2, 2}};
+    zt_animation *animation = animation_of(
+        FILM "camera: {}\nobjects:\n"
+             "  - sphere: { name: a, center: [0, 0, 0], radius: \"= 3*t + 0*sqrt(t)\" }\n"
+             "  - sphere: { name: b, center: [0, 0, 0], radius: \"= floor(t) + 2*t\" }\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        zt_subject subject;
+        zt_explanation e;
+        assert_int_equal(zt_subject_find(&subject, animation, cases[i].name, (zt_listener){0}),
+                         ZT_OK);
+        assert_int_equal(zt_subject_explain(&e, &subject, cases[i].time_s, (zt_listener){0}),
+                         ZT_OK);
+        assert_false(e.velocity_exact);
+        assert_true(fabs(e.velocity[0] - cases[i].velocity) < 1e-6);
+    }
     zt_animation_free(&animation);
 }
 
@@ -372,6 +398,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(expressions),
         cmocka_unit_test(expressions_in_range),
+        cmocka_unit_test(velocity_of_expressions),
         cmocka_unit_test(long_chain),
         cmocka_unit_test(two_animations),
         cmocka_unit_test(no_value_at_a_frame),

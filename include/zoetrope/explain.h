@@ -21,7 +21,7 @@ enum { ZT_SUBJECT_CHANNELS_MAX = 9 };
 typedef struct zt_subject {
     const char *name;            /* "ball.center" */
     const char *meaning;         /* "the middle" */
-    const char *driver;          /* ""constant", or as zt_movement.driver says */
+    const char *driver;          /* "constant", or as zt_movement.driver says */
     const char *unit;            /* of its numbers: "deg", or "" */
     const char *const *channels; /* "x" "y" "z"; "" of a single number */
     int channel_count;

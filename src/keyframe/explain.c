@@ -115,7 +115,9 @@ static double way_duration_s(const zt_curve *curve, double time_s) {
     return last > 0 ? curve->times[key + 1] - curve->times[key] : 1;
 }
 
-/* By a difference of second order: central, or to the one side that has no key in between. */
+/* By a difference of second order: central, or to the one side that has no key in between. Of
+ * what has no keys it is what comes next: it may jump at this moment, or have no value before.
+ */
 static zt_status difference(zt_explanation *e, const zt_subject *subject,
                             zt_listener listener) {
     const zt_curve *curve = curve_of(subject);
@@ -123,7 +125,7 @@ static zt_status difference(zt_explanation *e, const zt_subject *subject,
     double h = fmax(1e-5 * way_s, 1e4 * DBL_EPSILON * fabs(e->time_s)), t = e->time_s;
     double one[ZT_SUBJECT_CHANNELS_MAX] = {0}, two[ZT_SUBJECT_CHANNELS_MAX] = {0};
     bool ahead = !curve || same_way(curve, t, t + 2 * h);
-    bool behind = !curve || same_way(curve, t - h, t);
+    bool behind = curve && same_way(curve, t - h, t);
     bool central = behind && ahead;
     if (!ahead && behind) h = -h;
     ZT_TRY(change(one, subject, central ? t - h : t, t + h, listener));
