@@ -217,6 +217,12 @@ static void inside(void **state) {
     film->rest.objects[GROUP].placement.scale = (vec3){0, 0, 0};
     t = advice_on(film);
     assert_silent(&t);
+
+    film = small_film(97, (zt_rate){24, 1}); /* at rest, and inside */
+    film->rest.objects[BALL].sphere = (zt_sphere){film->rest.camera.position, 1};
+    t = advice_on(film);
+    assert_int_equal(t.warning_count, 1);
+    assert_says(&t, "the camera is inside of ball at frame 0");
 }
 
 /* A film of a hundred thousand spheres and of a hundred million frames is looked at in a second

@@ -109,9 +109,11 @@ static void tell(const findings *f, const zt_animation *animation, zt_listener l
                    zt_moment_in_words(rate, f->along_up_s).text);
     for (int32_t i = 0; i < animation->rest.object_count; i++) {
         if (isnan(f->inside_s[i])) continue;
-        zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s from %s to %s",
-                   object_name(animation, i), zt_moment_in_words(rate, f->inside_s[i]).text,
-                   zt_moment_in_words(rate, f->outside_s[i]).text);
+        bool once = f->inside_s[i] == f->outside_s[i];
+        zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s %s %s%s%s",
+                   object_name(animation, i), once ? "at" : "from",
+                   zt_moment_in_words(rate, f->inside_s[i]).text, once ? "" : " to ",
+                   once ? "" : zt_moment_in_words(rate, f->outside_s[i]).text);
     }
 }
 
