@@ -61,15 +61,9 @@ zt_status zt_subject_time(double *time_s, const zt_animation *animation, const c
     return ZT_EARGUMENT;
 }
 
-static double frame_at(zt_rate rate, double time_s) {
-    double frame = time_s * rate.num / rate.den, nearest = rint(frame);
-    return fabs(nearest) < 1e15 && zt_rate_time(rate, (int64_t)nearest) == time_s ? nearest
-                                                                                  : frame;
-}
-
 zt_moment_words zt_moment_in_words(zt_rate rate, double time_s) {
     zt_moment_words words;
-    double frame = frame_at(rate, time_s);
+    double frame = zt_formula_frame(rate, time_s);
     if (frame == rint(frame))
         snprintf(words.text, sizeof words.text, "frame %.0f", frame);
     else
@@ -178,7 +172,7 @@ zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subj
                              double time_s, zt_listener listener) {
     const zt_animation *animation = subject->film;
     *explanation = (zt_explanation){.time_s = time_s,
-                                    .frame = frame_at(animation->film.rate, time_s),
+                                    .frame = zt_formula_frame(animation->film.rate, time_s),
                                     .key_before = -1,
                                     .key_after = -1};
     ZT_TRY(zt_subject_eval(explanation->value, subject, time_s, listener));

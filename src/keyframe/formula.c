@@ -24,8 +24,7 @@ zt_place zt_formula_place(const zt_formula *formula, const zt_expression_mistake
     return place;
 }
 
-/* The frame at a time: exactly a whole number for the time of a whole one. */
-static double frame_at(zt_rate rate, double time_s) {
+double zt_formula_frame(zt_rate rate, double time_s) {
     double frame = time_s * rate.num / rate.den, whole = round(frame);
     bool is_frame = fabs(whole) < 0x1p32 && zt_rate_time(rate, (int64_t)whole) == time_s;
     return is_frame ? whole : frame;
@@ -54,7 +53,7 @@ zt_status zt_formula_eval(double *value, const zt_formula *formula, const zt_for
         else
             numbers[references[i].first] = formula->terms[i].number;
     ZT_TRY(formulas->door->eval(value, formulas->expressions, formula->expression, time_s,
-                                frame_at(rate, time_s), numbers, mistake));
+                                zt_formula_frame(rate, time_s), numbers, mistake));
     if (kind == ZT_VALUE_ANGLE) *value *= radian;
     if (kind == ZT_VALUE_ROTATION) {
         vec3 degrees = {value[0], value[1], value[2]};

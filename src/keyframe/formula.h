@@ -33,6 +33,9 @@ static inline bool zt_formula_spreads(zt_value_kind kind) {
     return kind == ZT_VALUE_SCALE || kind == ZT_VALUE_COLOR;
 }
 
+/* What a formula calls frame: exactly a whole number at the time of a whole one. */
+double zt_formula_frame(zt_rate rate, double time_s);
+
 /* Where in the description a mistake in the formula's text is. */
 zt_place zt_formula_place(const zt_formula *formula, const zt_expression_mistake *mistake);
 
