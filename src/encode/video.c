@@ -190,10 +190,10 @@ static zt_status open_container(movie *m, AVRational rate) {
     int64_t timescale = rate.num;
     while (timescale < TIMESCALE_MIN) timescale *= 2;
     AVDictionary *options = NULL;
-    av_dict_set(&options, "movflags", "+faststart", 0);
-    av_dict_set_int(&options, "video_track_timescale", timescale, 0);
-    av_dict_set_int(&options, "movie_timescale", timescale, 0);
-    error = avformat_write_header(m->container, &options);
+    error = av_dict_set(&options, "movflags", "+faststart", 0);
+    if (error >= 0) error = av_dict_set_int(&options, "video_track_timescale", timescale, 0);
+    if (error >= 0) error = av_dict_set_int(&options, "movie_timescale", timescale, 0);
+    if (error >= 0) error = avformat_write_header(m->container, &options);
     av_dict_free(&options);
     AV_TRY(m, error);
     return ZT_OK;
