@@ -1,4 +1,4 @@
-/* Time as the wall shows it, for progress and measurements only: no image depends on it. */
+/* Time as the wall shows it, for measurements only: no image depends on it. */
 #ifndef ZT_BASE_CLOCK_H
 #define ZT_BASE_CLOCK_H
 

@@ -1,9 +1,8 @@
 /* To 8 bits by a table, exactly. The top half of a float's bits (exponent and seven bits of the
  * mantissa) picks a bucket of 2^16 neighbouring floats; in each bucket at most one step from a
  * code to the next one lies, and the bucket knows where. The idea of the buckets is Fabian
- * Giesen's
- * ("float->sRGB8", 2012), whose table interpolates; this one compares and so is never off by
- * one. Owns the two tables, 6.5 KB each, made at the first use. */
+ * Giesen's ("float->sRGB8", 2012), whose table interpolates; this one compares and so is never
+ * off by one. Owns the two tables, 6.5 KB each, made at the first use. */
 #include "image/develop.h"
 
 #include <assert.h>

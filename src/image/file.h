@@ -3,8 +3,6 @@
 #ifndef ZT_IMAGE_FILE_H
 #define ZT_IMAGE_FILE_H
 
-#include <stdbool.h>
-
 #include <zoetrope/image.h>
 #include <zoetrope/status.h>
 
