@@ -18,8 +18,9 @@ static void help_and_version(void **state) {
     r = zoetrope("--help");
     assert_int_equal(r->code, 0);
     assert_string_equal(r->err, "");
-    const char *words[] = {"render", "frame", "preview", "check", "--size", "--version"};
-    for (int i = 0; i < 6; i++) assert_contains(r->out, words[i]);
+    const char *words[] = {"render",  "frame",  "preview", "check",
+                           "explain", "curves", "--size",  "--version"};
+    for (int i = 0; i < 8; i++) assert_contains(r->out, words[i]);
     r = zoetrope("check -h");
     assert_int_equal(r->code, 0);
     assert_contains(r->out, "zoetrope check FILE");
