@@ -271,12 +271,21 @@ static bool is_aim(const zt_node *node, const zt_property *property) {
            property == zt_property_find(ZT_OWNER_CAMERA, "look_at");
 }
 
-/* A mapping with one of the words below; NULL where it has none. */
+/* The words for them, each before what may stand beside it. */
+enum { FOLLOW, ORBIT, OFFSET, LOOK_AT, WORD_COUNT };
+static const struct {
+    const char *names[3];
+    int name_count;
+} words[WORD_COUNT] = {[FOLLOW] = {{"follow"}, 1},
+                       [ORBIT] = {{"orbit"}, 1},
+                       [OFFSET] = {{"offset"}, 1},
+                       [LOOK_AT] = {{"look_at", "roll", "up"}, 3}};
+
+/* What a mapping with one of the words says by it; NULL where it has none. */
 static const zt_node *find_word(int *word, const zt_node *node) {
-    static const char *const words[] = {"follow", "orbit", "offset", "look_at"};
     const zt_node *value = NULL;
-    for (*word = 0; *word < COUNT(words) && node->kind == ZT_NODE_MAPPING; ++*word) {
-        value = zt_field(&(zt_fields){.mapping = node}, words[*word]);
+    for (*word = 0; *word < WORD_COUNT && node->kind == ZT_NODE_MAPPING; ++*word) {
+        value = zt_field(&(zt_fields){.mapping = node}, words[*word].names[0]);
         if (value) break;
     }
     return value;
@@ -284,21 +293,17 @@ static const zt_node *find_word(int *word, const zt_node *node) {
 
 static zt_status read_mapping(pending *p, zt_reading *reading, const zt_node *node, int word,
                               const zt_node *value, const char *thing) {
-    static const char *const names[][3] = {
-        {"follow"}, {"orbit"}, {"offset"}, {"look_at", "roll", "up"}};
     zt_mistakes *mistakes = &reading->mistakes;
-    const zt_track *track = &p->track;
+    const char *const *names = words[word].names;
+    zt_value_kind kind = word == LOOK_AT ? ZT_VALUE_ROTATION : ZT_VALUE_VECTOR;
     zt_fields fields;
-    zt_fields_open(&fields, mistakes, node, track->property->name, names[word],
-                   word == 3 ? 3 : 1);
-    if (word == 0 || word == 1)
-        if (!is_of_kind(track, mistakes, node, names[word][0], ZT_VALUE_VECTOR)) return ZT_OK;
-    if (word == 3 && !is_of_kind(track, mistakes, node, "look_at", ZT_VALUE_ROTATION))
-        return ZT_OK;
-    if (word == 0) return read_follow(p, reading, value, thing);
-    bool good = word == 1   ? read_orbit(p, reading, value)
-                : word == 2 ? read_offset(p, reading, value)
-                            : read_look_at(p, reading, value, &fields);
+    zt_fields_open(&fields, mistakes, node, p->track.property->name, names,
+                   words[word].name_count);
+    if (word != OFFSET && !is_of_kind(&p->track, mistakes, node, names[0], kind)) return ZT_OK;
+    if (word == FOLLOW) return read_follow(p, reading, value, thing);
+    bool good = word == ORBIT    ? read_orbit(p, reading, value)
+                : word == OFFSET ? read_offset(p, reading, value)
+                                 : read_look_at(p, reading, value, &fields);
     return good ? keep(reading, p, thing) : ZT_OK;
 }
 

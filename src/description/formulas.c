@@ -1,6 +1,5 @@
 #include "description/formulas.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- names ----------------------------------------------------------------------------------
@@ -20,20 +19,10 @@ typedef struct lookup {
     bool out_of_memory;
 } lookup;
 
-static int by_text(const void *pa, const void *pb) {
-    return strcmp(((const zt_name *)pa)->text, ((const zt_name *)pb)->text);
-}
-
 /* A variable that is a number. */
 static bool find_number(double *number, const zt_names *variables, const char *name) {
-    zt_name wanted = {.text = name};
-    const zt_name *found = NULL;
-    if (variables->mapping)
-        found = bsearch(&wanted, variables->sorted, (size_t)variables->mapping->count,
-                        sizeof wanted, by_text);
-    if (!found) return false;
-    const zt_node *node = zt_node_value(variables->mapping, found->entry);
-    return node->kind == ZT_NODE_TEXT && !node->quoted &&
+    const zt_node *node = zt_name_find(variables, name);
+    return node && node->kind == ZT_NODE_TEXT && !node->quoted &&
            zt_text_number(number, node->text, node->text + strlen(node->text));
 }
 

@@ -41,6 +41,9 @@ typedef struct zt_reading {
 zt_status zt_names_open(zt_names *names, zt_reading *reading, const zt_node *mapping,
                         const char *what, const char *expected);
 
+/* What a name stands for, or NULL. */
+const zt_node *zt_name_find(const zt_names *names, const char *text);
+
 /* What the name that a node holds stands for, or NULL after telling: `what` is "timing". */
 const zt_node *zt_named(zt_reading *reading, const zt_names *names, const zt_node *node,
                         const char *what);

@@ -38,51 +38,48 @@ static bool read_scale(double value[3], zt_mistakes *mistakes, const zt_node *no
     return true;
 }
 
+/* What is made of numbers, the same for values and for differences of them. */
+static bool read_made_of_numbers(double *value, zt_mistakes *mistakes, const zt_node *node,
+                                 const char *what, zt_value_kind kind, zt_range range) {
+    switch (kind) {
+    case ZT_VALUE_NUMBER:
+        return zt_read_number(value, mistakes, node, what, range);
+    case ZT_VALUE_ANGLE:
+        return zt_read_angle(value, mistakes, node, what, range);
+    case ZT_VALUE_VECTOR:
+    case ZT_VALUE_COLOR:
+        return zt_read_numbers(value, 3, mistakes, node, what, range);
+    case ZT_VALUE_SCALE:
+        return read_scale(value, mistakes, node, what, range);
+    case ZT_VALUE_VERTICES:
+        return read_vertices(value, mistakes, node, what, range);
+    case ZT_VALUE_ROTATION:
+    case ZT_VALUE_SWITCH:
+        break;
+    }
+    return false;
+}
+
 bool zt_read_value(double *value, zt_mistakes *mistakes, const zt_node *node,
                    const zt_property *property) {
     const char *what = property->name;
     zt_range range = zt_property_range(property);
     zt_written_rotation rotation;
     switch (property->kind) {
-    case ZT_VALUE_NUMBER:
-        return zt_read_number(value, mistakes, node, what, range);
-    case ZT_VALUE_ANGLE:
-        return zt_read_angle(value, mistakes, node, what, range);
-    case ZT_VALUE_VECTOR:
-        return zt_read_numbers(value, 3, mistakes, node, what, range);
-    case ZT_VALUE_SCALE:
-        return read_scale(value, mistakes, node, what, range);
     case ZT_VALUE_COLOR:
         return zt_read_color(value, mistakes, node, what, range);
-    case ZT_VALUE_VERTICES:
-        return read_vertices(value, mistakes, node, what, range);
     case ZT_VALUE_SWITCH:
         return zt_read_switch(value, mistakes, node, what);
     case ZT_VALUE_ROTATION:
         if (!zt_read_rotation(&rotation, mistakes, node, what, range)) return false;
         memcpy(value, &rotation.rotation, sizeof rotation.rotation);
         return true;
+    default:
+        return read_made_of_numbers(value, mistakes, node, what, property->kind, range);
     }
-    return false;
 }
 
 bool zt_read_difference(double *value, zt_mistakes *mistakes, const zt_node *node,
                         const char *what, zt_value_kind kind) {
-    switch (kind) {
-    case ZT_VALUE_NUMBER:
-        return zt_read_number(value, mistakes, node, what, zt_any_number);
-    case ZT_VALUE_ANGLE:
-        return zt_read_angle(value, mistakes, node, what, zt_any_number);
-    case ZT_VALUE_VECTOR:
-    case ZT_VALUE_COLOR:
-        return zt_read_numbers(value, 3, mistakes, node, what, zt_any_number);
-    case ZT_VALUE_SCALE:
-        return read_scale(value, mistakes, node, what, zt_any_number);
-    case ZT_VALUE_VERTICES:
-        return read_vertices(value, mistakes, node, what, zt_any_number);
-    case ZT_VALUE_ROTATION:
-    case ZT_VALUE_SWITCH:
-        break;
-    }
-    return false;
+    return read_made_of_numbers(value, mistakes, node, what, kind, zt_any_number);
 }

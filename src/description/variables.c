@@ -60,14 +60,19 @@ static void tell_unknown(zt_mistakes *mistakes, const zt_names *names, const zt_
                zt_suggest(&nearest).text);
 }
 
+const zt_node *zt_name_find(const zt_names *names, const char *text) {
+    int32_t entry = find(names, text, names->mapping ? names->mapping->count : 0);
+    return entry >= 0 ? zt_node_value(names->mapping, entry) : NULL;
+}
+
 const zt_node *zt_named(zt_reading *reading, const zt_names *names, const zt_node *node,
                         const char *what) {
     const char *text = zt_read_text(&reading->mistakes, node, what);
-    int32_t count = names->mapping ? names->mapping->count : 0;
-    int32_t entry = text ? find(names, text, count) : -1;
-    if (entry >= 0) return zt_node_value(names->mapping, entry);
-    if (text) tell_unknown(&reading->mistakes, names, node, text, count, what);
-    return NULL;
+    const zt_node *found = text ? zt_name_find(names, text) : NULL;
+    if (text && !found)
+        tell_unknown(&reading->mistakes, names, node, text,
+                     names->mapping ? names->mapping->count : 0, what);
+    return found;
 }
 
 /* ---- variables ------------------------------------------------------------------------------
