@@ -1,7 +1,5 @@
 /* Advice on the camera: what it looks along, and what it is inside of. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "keyframe/advice.h"
