@@ -65,12 +65,15 @@ static inline int files_end(void **state) {
     (void)state;
     fflush(stderr);
     dup2(files_stderr, 2);
-    bool silent = true;
     FILE *printed = fopen("stderr.txt", "r");
+    bool silent = printed != NULL;
     for (int c; printed && (c = fgetc(printed)) != EOF; silent = false) fputc(c, stderr);
     if (printed) fclose(printed);
-    if (chdir(files_home) != 0) return 1;
-    return nftw(files_directory, files_remove, 8, FTW_DEPTH | FTW_PHYS) || !silent;
+    bool gone = chdir(files_home) == 0 &&
+                nftw(files_directory, files_remove, 8, FTW_DEPTH | FTW_PHYS) == 0;
+    /* cmocka tells of a group's teardown that failed, but counts it for nothing. */
+    if (!gone || !silent) exit(EXIT_FAILURE);
+    return 0;
 }
 
 /* No file of this process grows beyond `size` bytes from here on, as on a full disk; 0: any. */
