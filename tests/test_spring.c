@@ -55,7 +55,7 @@ static double draw_ratio(draw *d) {
 }
 
 /* Within 1e-9 of the amplitude for frequencies from 1e-6 to 1e9 and ratios from 0 to 1e6, at
- * times within an hour, over one stretch of time and over ten that follow each other. */
+ * times up to 5000 s, over one stretch of time and over ten that follow each other. */
 static void springs_are_exact(void **state) {
     (void)state;
     if (!REAL_IS_QUAD) skip();
