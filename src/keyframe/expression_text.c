@@ -51,16 +51,9 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_name_start(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (c & 0x80);
 }
-static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-static const char *skip_space(const char *at) {
-    while (is_space(*at)) at++;
-    return at;
-}
-static const char *skip_digits(const char *at) {
-    while (is_digit(*at)) at++;
-    return at;
-}
+static const char *skip_space(const char *at) { return at + strspn(at, " \t\n\r"); }
+static const char *skip_digits(const char *at) { return at + strspn(at, "0123456789"); }
 static const char *skip_name(const char *at) {
     while (is_name_start(*at) || is_digit(*at)) at++;
     return at;
@@ -171,16 +164,17 @@ static int find(const reader *r, const char *start, const char *end, int32_t *id
     return r->names->find(r->names->user, name, id);
 }
 
-static bool is_word(const reader *r, const char *start, const char *end) {
+/* Whether a name is among words that end with NULL. */
+static bool is_among(const char *const *words, const char *start, const char *end) {
     size_t length = (size_t)(end - start);
-    for (const char *const *word = r->words; *word; word++)
+    for (const char *const *word = words; *word; word++)
         if (strlen(*word) == length && memcmp(*word, start, length) == 0) return true;
     return false;
 }
 
 static zt_status unknown(reader *r, const char *start, const char *end) {
     const char *dot = memrchr(start, '.', (size_t)(end - start));
-    if (dot && is_word(r, start, dot))
+    if (dot && is_among(r->words, start, dot))
         return zt_expression_wrong(r->mistake, place_of(r, dot + 1, end),
                                    "\"%.*s\" has no channels", shown(start, dot), start);
     if (dot && zt_expression_channel(dot + 1, end) >= 0) end = dot;
@@ -259,19 +253,17 @@ static zt_status read_prop(reader *r, const char *end) {
 }
 
 static zt_status read_name(reader *r) {
-    static const char *const lua_words[] = {"and", "or", "not", "true", "false"};
+    static const char *const lua_words[] = {"and", "or", "not", "true", "false", NULL};
     const char *end = skip_name(r->at);
-    for (size_t i = 0; i < sizeof lua_words / sizeof *lua_words; i++)
-        if (strlen(lua_words[i]) == (size_t)(end - r->at) &&
-            memcmp(lua_words[i], r->at, (size_t)(end - r->at)) == 0) {
-            emit(r, end, "%s", lua_words[i]);
-            return ZT_OK;
-        }
+    if (is_among(lua_words, r->at, end)) {
+        emit(r, end, "%.*s", (int)(end - r->at), r->at);
+        return ZT_OK;
+    }
     if (end - r->at == 4 && memcmp(r->at, "prop", 4) == 0) return read_prop(r, end);
     const char *chain_end = end;
     while (*chain_end == '.' && is_name_start(chain_end[1]))
         chain_end = skip_name(chain_end + 1);
-    if (chain_end > end || !is_word(r, r->at, end))
+    if (chain_end > end || !is_among(r->words, r->at, end))
         return read_reference(r, r->at, chain_end, chain_end);
     int32_t id;
     if (find(r, r->at, end, &id) != 0)
