@@ -373,6 +373,25 @@ static void many_mistakes(void **state) {
     free(text);
 }
 
+/* Of very many models that are not there, a hundred are told, and no more looked for. */
+static void many_absent_models(void **state) {
+    (void)state;
+    enum { MODEL_COUNT = 20000 };
+    static told t;
+    static char text[64 * MODEL_COUNT];
+    size_t size = (size_t)snprintf(text, sizeof text, "%sobjects:\n", HEAD);
+    for (int i = 0; i < MODEL_COUNT; i++)
+        size += (size_t)snprintf(text + size, sizeof text - size,
+                                 "  - mesh: { file: absent%d.ply }\n", i);
+    double begin_s = zt_clock_s();
+    assert_int_equal(read_bytes(&t, text, size), ZT_EDESCRIPTION);
+    assert_non_null(strstr(t.lines, "cannot read absent99.ply"));
+    assert_null(strstr(t.lines, "absent100.ply"));
+    assert_non_null(strstr(t.lines, "100 models cannot be read; no further ones are tried"));
+    assert_int_equal(t.error_count, 101);
+    assert_true(zt_clock_s() - begin_s < 1);
+}
+
 /* A file that cannot be read is no mistake of the description. */
 static void unreadable_files(void **state) {
     (void)state;
@@ -402,12 +421,19 @@ static void silent(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_beginning),  cmocka_unit_test(random_changes),
-        cmocka_unit_test(alias_bomb),       cmocka_unit_test(variable_bombs),
-        cmocka_unit_test(shared_words),     cmocka_unit_test(extremes),
-        cmocka_unit_test(many_uses),        cmocka_unit_test(alias_groups),
-        cmocka_unit_test(large_files),      cmocka_unit_test(many_mistakes),
-        cmocka_unit_test(unreadable_files), cmocka_unit_test(silent),
+        cmocka_unit_test(every_beginning),
+        cmocka_unit_test(random_changes),
+        cmocka_unit_test(alias_bomb),
+        cmocka_unit_test(variable_bombs),
+        cmocka_unit_test(shared_words),
+        cmocka_unit_test(extremes),
+        cmocka_unit_test(many_uses),
+        cmocka_unit_test(alias_groups),
+        cmocka_unit_test(large_files),
+        cmocka_unit_test(many_mistakes),
+        cmocka_unit_test(many_absent_models),
+        cmocka_unit_test(unreadable_files),
+        cmocka_unit_test(silent),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -20,6 +20,7 @@ typedef struct things {
     const char *directory;
     zt_materials materials;
     model *first_model, *last_model;
+    int refused_count;     /* of models */
     const zt_node **names; /* of lights and objects, as they come */
     int64_t name_count;
     int counts[ZT_OWNER_COUNT]; /* how many there were of each */
@@ -150,7 +151,8 @@ static zt_status read_model(int32_t *mesh, things *t, const zt_node *node) {
     *mesh = 0;
     for (const model *m = t->first_model; m; m = m->next, (*mesh)++)
         if (zt_text_equal(m->file, file)) return ZT_OK;
-    if (zt_mistakes_full(&reading->mistakes)) return ZT_OK;
+    if (zt_mistakes_full(&reading->mistakes) || t->refused_count == ZT_MISTAKES_TOLD_MAX)
+        return ZT_OK;
     model *fresh = ZT_PUSH(reading->temporary, model, 1);
     const char *directory = *file == '/' ? "" : t->directory;
     size_t directory_length = strlen(directory), file_length = strlen(file);
@@ -168,7 +170,11 @@ static zt_status read_model(int32_t *mesh, things *t, const zt_node *node) {
     zt_status status = zt_ply_read(&fresh->mesh, &reading->animation->arena, path, &node->place,
                                    reading->mistakes.listener);
     if (status == ZT_EMEMORY) return status;
-    if (status != ZT_OK) reading->mistakes.count++; /* told by the reader of the model */
+    if (status == ZT_OK) return ZT_OK;
+    reading->mistakes.count++; /* told by the reader of the model */
+    if (++t->refused_count == ZT_MISTAKES_TOLD_MAX)
+        zt_mistake(&reading->mistakes, &node->place,
+                   "%d models cannot be read; no further ones are tried", t->refused_count);
     return ZT_OK;
 }
 
