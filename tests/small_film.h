@@ -23,9 +23,12 @@ static inline zt_animation *small_film(int64_t frame_count, zt_rate rate) {
                             .light_count = 1,
                             .object_count = 3};
     const zt_thing things[THING_COUNT] = {
-        {ZT_OWNER_CAMERA, 0, "camera"},   {ZT_OWNER_MATERIAL, 0, "clay"},
-        {ZT_OWNER_POINT, 0, "lamp"},      {ZT_OWNER_SPHERE, BALL, "ball"},
-        {ZT_OWNER_GROUP, GROUP, "group"}, {ZT_OWNER_SPHERE, INNER, "inner ball"}};
+        {ZT_OWNER_CAMERA, 0, "camera", {0}},
+        {ZT_OWNER_MATERIAL, 0, "clay", {0}},
+        {ZT_OWNER_POINT, 0, "lamp", {"small.yaml", NULL, 4, 5, 4}},
+        {ZT_OWNER_SPHERE, BALL, "ball", {0}},
+        {ZT_OWNER_GROUP, GROUP, "group", {0}},
+        {ZT_OWNER_SPHERE, INNER, "inner ball", {0}}};
     zt_thing *own = ZT_PUSH(arena, zt_thing, THING_COUNT);
     memcpy(own, things, sizeof things);
     for (int i = 0; i < THING_COUNT; i++)

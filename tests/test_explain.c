@@ -247,6 +247,8 @@ static void units_and_places(void **state) {
     film->rest.lights[0].position = (vec3){1, 2, 3};
     assert_int_equal(zt_subject_find(&subject, film, "lamp.position", deaf), ZT_OK);
     assert_string_equal(subject.driver, "constant");
+    assert_int_equal(zt_subject_stands_at(&subject).line, 4); /* where the lamp is */
+    assert_string_equal(zt_subject_stands_at(&subject).file, "small.yaml");
     assert_int_equal(subject.key_count, 0);
     e = explained(film, "lamp.position", 17);
     for (int c = 0; c < 3; c++) assert_true(e.value[c] == c + 1 && e.velocity[c] == 0);

@@ -65,7 +65,7 @@ static void explain(void **state) {
                 "way        linear: u = 0.75 of its time\n");
     r = zoetrope("explain moving.yaml stair.center@1.5s");
     assert_contains(r->out, "stair.center at frame 15, 1.5 s: the middle\n");
-    assert_contains(r->out, "driven by  constant\n");
+    assert_contains(r->out, "driven by  constant  moving.yaml:9:5\n");
     assert_contains(r->out, "value                 1            2            3\n");
     r = zoetrope("explain moving.yaml clay.color@40");
     assert_contains(r->out, "= #c8553d");

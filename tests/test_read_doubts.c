@@ -35,7 +35,8 @@ static void nothing(void **state) {
         "position: { after: loop, keys: { 0 s: [0, 0, 0], 3 s: [1, 0, 0] } }",
         "position: { before: linear, keys: { -1 s: [0, 0, 0], 1 s: [1, 0, 0] } }",
         "position: { curve: hold, keys: { 0 s: [0, 0, 0], 1: [1, 0, 0], 2: [5, 0, 0] } }",
-        "rotation: { keys: { 0 s: [0, 0, 0], 1 s: [0, 179.9, 0] } }",
+        "rotation: { keys: { 0 s: [0, 0, 0], 1 s: [0, 178.9, 0] } }",
+        "rotation: { keys: { 0 s: [0, 0, 0], 1 s: [0, 181.1, 0] } }",
         "rotation: { curve: hold, keys: { 0 s: [0, 0, 0], 1 s: [0, 180, 0] } }",
         "rotation: { in: turns, keys: { 0 s: [0, 0, 0], 1 s: [0, 180, 0] } }",
         "rotation: { keys: { 0: { axis: [0, 1, 0], angle: 0 }, 9: { axis: [0, 1, 0], angle: "
@@ -83,6 +84,12 @@ static void half_turns(void **state) {
         snprintf(expected, sizeof expected, "6:37: warning: %s", words);
         assert_doubts(property, expected);
     }
+    static const char near[] =
+        "6:37: warning: nearly half a turn from the key before it: a little "
+        "more, and it goes the other way round; a key between them says "
+        "which one\n";
+    assert_doubts("rotation: { keys: { 0 s: [0, 0, 0], 1 s: [0, 179.1, 0] } }", near);
+    assert_doubts("rotation: { keys: { 0 s: [0, 0, 0], 1 s: [0, 180.9, 0] } }", near);
 }
 
 static void handles(void **state) {

@@ -48,7 +48,7 @@ zt_status zt_subject_find(zt_subject *subject, const zt_animation *animation, co
 /* Movement number `index`, as zt_animation_movement counts them. */
 zt_subject zt_subject_of_movement(const zt_animation *animation, int index);
 
-/* Where the property stands. */
+/* Where the property stands; what does not move, where the thing does that has it. */
 zt_subject_place zt_subject_stands_at(const zt_subject *subject);
 
 /* The value at a time in seconds, `channel_count` numbers as a description writes them (angles

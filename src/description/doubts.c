@@ -79,7 +79,7 @@ static void within_a_frame(const doubter *d, int32_t k) {
  */
 
 static void half_turn(const doubter *d, int32_t k) {
-    const double nearly = 1e-6;
+    const double exactly = 1e-6, nearly = pi / 180;
     const zt_curve *curve = d->curve;
     zt_curve_kind kind = d->keys->keys[k].kind;
     if (curve->value_kind != ZT_VALUE_ROTATION || curve->space != ZT_SPACE_VALUES) return;
@@ -88,9 +88,16 @@ static void half_turn(const doubter *d, int32_t k) {
     double angle =
         zt_rotation_angle((quat){v[0], v[1], v[2], v[3]}, (quat){v[4], v[5], v[6], v[7]});
     if (angle < pi - nearly) return;
-    zt_doubt(d->mistakes, place(d, k + 1),
-             "half a turn from the key before it: both ways round are as short; a key between "
-             "them says which one");
+    if (angle < pi - exactly)
+        zt_doubt(
+            d->mistakes, place(d, k + 1),
+            "nearly half a turn from the key before it: a little more, and it goes the other "
+            "way round; a key between them says which one");
+    else
+        zt_doubt(
+            d->mistakes, place(d, k + 1),
+            "half a turn from the key before it: both ways round are as short; a key between "
+            "them says which one");
 }
 
 /* Handles of a Bezier way that reach beyond its other end. */

@@ -71,7 +71,7 @@ int zt_motion_names(const char *names[ZT_FIELD_NAMES_MAX], zt_owner owner) {
 zt_status zt_motion_read(zt_reading *reading, const zt_fields *fields, zt_owner owner,
                          int32_t index, const char *name, const zt_place *place) {
     zt_property_rest(&reading->animation->rest, owner, index);
-    ZT_TRY(zt_things_add(reading, owner, index, name));
+    ZT_TRY(zt_things_add(reading, owner, index, name, place));
     for (int i = 0; i < zt_property_count; i++) {
         const zt_property *property = &zt_properties[i];
         if (property->owner != owner) continue;

@@ -8,7 +8,8 @@
 
 enum { NEAREST_TRIED_MAX = 1000 };
 
-zt_status zt_things_add(zt_reading *reading, zt_owner owner, int32_t index, const char *name) {
+zt_status zt_things_add(zt_reading *reading, zt_owner owner, int32_t index, const char *name,
+                        const zt_place *place) {
     zt_things *things = &reading->things;
     if (things->count == things->room) {
         int32_t room = things->room ? 2 * things->room : 64;
@@ -18,7 +19,7 @@ zt_status zt_things_add(zt_reading *reading, zt_owner owner, int32_t index, cons
         things->all = all;
         things->room = room;
     }
-    things->all[things->count++] = (zt_thing){owner, index, name};
+    things->all[things->count++] = (zt_thing){owner, index, name, *place};
     return ZT_OK;
 }
 

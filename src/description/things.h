@@ -15,7 +15,7 @@ typedef struct zt_things {
 
 /* Notes a thing as it is read; the name must outlive the reading. ZT_EMEMORY. */
 zt_status zt_things_add(struct zt_reading *reading, zt_owner owner, int32_t index,
-                        const char *name);
+                        const char *name, const zt_place *place);
 
 /* Once all are known, before the first is looked for: gives them to the animation, too, in the
  * order of the description. ZT_EMEMORY. */

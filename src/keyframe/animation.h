@@ -46,6 +46,7 @@ typedef struct zt_thing {
     zt_owner owner;
     int32_t index;    /* as zt_property_get takes it */
     const char *name; /* "camera", "ball", "sphere 2" */
+    zt_place place;   /* where the description has it; line 0 where that is not known */
 } zt_thing;
 
 /* The struct itself is the reader's calloc; zt_animation_free gives it back. */

@@ -144,7 +144,13 @@ static zt_subject_place public_place(const zt_place *place) {
 
 zt_subject_place zt_subject_stands_at(const zt_subject *subject) {
     const zt_track *track = track_of(subject);
-    return track ? public_place(&track->place) : (zt_subject_place){NULL, 0, 0};
+    if (track) return public_place(&track->place);
+    for (int32_t i = 0; i < subject->film->thing_count; i++) {
+        const zt_thing *thing = &subject->film->things[i];
+        if (thing->owner == subject->property->owner && thing->index == subject->index)
+            return public_place(&thing->place);
+    }
+    return (zt_subject_place){NULL, 0, 0};
 }
 
 /* What depends on other things is worked out with all of them. */
