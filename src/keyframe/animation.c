@@ -130,7 +130,7 @@ zt_contents zt_animation_contents(const zt_animation *animation) {
             contents.mesh_triangle_count +=
                 scene->meshes[scene->objects[i].mesh].triangle_count;
             break;
-        case ZT_SHAPE_COUNT:
+        default:
             break;
         }
     for (int32_t i = 0; i < scene->light_count; i++)

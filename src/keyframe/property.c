@@ -53,9 +53,9 @@ const zt_property zt_properties[] = {
 const int zt_property_count = sizeof zt_properties / sizeof zt_properties[0];
 
 const char *zt_owner_name(zt_owner owner) {
-    static const char *const names[ZT_OWNER_COUNT] = {"camera",   "material", "ambient",
-                                                      "point",    "plane",    "sphere",
-                                                      "triangle", "mesh",     "group"};
+    static const char *const names[ZT_OWNER_COUNT] = {
+        "camera", "material", "ambient", "point", "plane",   "sphere", "triangle", "disk",
+        "box",    "cylinder", "cone",    "torus", "capsule", "mesh",   "group"};
     return names[owner];
 }
 
@@ -126,7 +126,7 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
                                     .fov = 40 * (3.14159265358979323846 / 180)};
         break;
     case ZT_OWNER_MATERIAL:
-        scene->materials[index] = (zt_material){{1, 1, 1}, 0};
+        scene->materials[index] = (zt_material){.color = {1, 1, 1}};
         break;
     case ZT_OWNER_AMBIENT:
     case ZT_OWNER_POINT:

@@ -13,6 +13,8 @@ typedef struct zt_mesh {
     vec3 origin;
     const float *positions; /* vertex_count * 3, and at least one more float to read behind */
     const uint32_t *triangles; /* triangle_count * 3 indices of vertices, each < vertex_count */
+    const float *normals;      /* vertex_count * 3, unit; NULL where there are none */
+    const float *colors;       /* vertex_count * 3, linear light; NULL where there are none */
     int32_t vertex_count, triangle_count;
     vec3 low, high; /* bounds of the positions with `origin` added */
 } zt_mesh;

@@ -19,6 +19,12 @@ typedef enum zt_shape {
     ZT_SHAPE_PLANE,
     ZT_SHAPE_SPHERE,
     ZT_SHAPE_TRIANGLE,
+    ZT_SHAPE_DISK,
+    ZT_SHAPE_BOX,
+    ZT_SHAPE_CYLINDER,
+    ZT_SHAPE_CONE,
+    ZT_SHAPE_TORUS,
+    ZT_SHAPE_CAPSULE,
     ZT_SHAPE_MESH,
     ZT_SHAPE_GROUP, /* nothing to hit: it only moves its members */
     ZT_SHAPE_COUNT
@@ -39,6 +45,32 @@ typedef struct zt_triangle {
     vec3 vertices[3];
 } zt_triangle;
 
+/* Flat; the normal has any length but zero. */
+typedef struct zt_disk {
+    vec3 center, normal;
+    double radius;
+} zt_disk;
+
+/* A block: `size` is the whole length along each axis, before it is rotated. */
+typedef struct zt_block {
+    vec3 center, size;
+    quat rotation;
+} zt_block;
+
+/* Points around the way between two ends. Of a cylinder, closed by disks, `radius` alone
+ * counts; of a cone, closed likewise, it is the radius at `from`, and `end_radius` that at
+ * `to`; a capsule is all points no further than `radius` from the way. */
+typedef struct zt_tube {
+    vec3 from, to;
+    double radius, end_radius;
+} zt_tube;
+
+/* A tube of radius `tube_radius`, at most `radius`, around a circle across `axis`. */
+typedef struct zt_torus {
+    vec3 center, axis;
+    double radius, tube_radius;
+} zt_torus;
+
 /* Scale, then rotate, then move. */
 typedef struct zt_placement {
     vec3 position;
@@ -50,20 +82,35 @@ typedef struct zt_placement {
  * between equal hits. */
 typedef struct zt_object {
     zt_shape shape;
-    int32_t parent;   /* the group that it is in, or -1 */
-    int32_t material; /* -1 in groups */
-    int32_t mesh;     /* of ZT_SHAPE_MESH, else -1 */
+    int32_t parent;     /* the group that it is in, or -1 */
+    int32_t material;   /* -1 in groups */
+    int32_t mesh;       /* of ZT_SHAPE_MESH, else -1 */
+    bool smooth;        /* shaded by the mesh's normals, where it has any */
+    bool vertex_colors; /* the mesh's colors, where it has any, tint the material's */
     union {
         zt_plane plane;
         zt_sphere sphere;
         zt_triangle triangle;
+        zt_disk disk;
+        zt_block box;
+        zt_tube tube; /* of ZT_SHAPE_CYLINDER, ZT_SHAPE_CONE and ZT_SHAPE_CAPSULE */
+        zt_torus torus;
         zt_placement placement; /* of ZT_SHAPE_MESH and ZT_SHAPE_GROUP */
     };
 } zt_object;
 
+typedef enum zt_pattern { ZT_PATTERN_NONE, ZT_PATTERN_CHECKER, ZT_PATTERN_STRIPES } zt_pattern;
+
+/* A pattern changes between `color` and `other_color` in cells `size` long, in the space that
+ * the object's numbers are given in (a mesh's: its model's): cubes that begin at its origin, or
+ * slabs across `direction`. A mesh, box or group moves its pattern with it. */
 typedef struct zt_material {
     vec3 color;
     double reflectivity;
+    zt_pattern pattern;
+    vec3 other_color;
+    double pattern_size;
+    vec3 pattern_direction; /* of stripes; any length but zero */
 } zt_material;
 
 typedef enum zt_light_kind { ZT_LIGHT_AMBIENT, ZT_LIGHT_POINT } zt_light_kind;

@@ -17,10 +17,6 @@ typedef enum zt_primitive_kind {
     ZT_PRIMITIVE_MESH /* intersected by meshes.c */
 } zt_primitive_kind;
 
-typedef struct real3 {
-    real x, y, z;
-} real3;
-
 /* A box along the axes; low > high where it is empty. */
 typedef struct zt_box {
     real3 low, high;
@@ -58,10 +54,6 @@ typedef struct zt_primitive {
         } triangle;
     };
 } zt_primitive;
-
-static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) {
-    return ax * bx + ay * by + az * bz;
-}
 
 /* Each function below gives the nearest positive distance at which the ray o + t d, |d| = 1,
  * meets the primitive, or infinity (or NaN, which compares as no hit). */

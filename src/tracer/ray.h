@@ -5,16 +5,7 @@
 #include <stdalign.h>
 #include <stdint.h>
 
-/* What rays are made of. Space is relative to the camera: the subtraction is made in double
- * precision before anything becomes `real`. */
-typedef float real;
-#define REAL_INFINITY __builtin_inff()
-
-static inline real real_max(real a, real b) { return a > b ? a : b; }
-static inline real real_min(real a, real b) { return a < b ? a : b; }
-
-/* The relative error of one rounding: 2^-24. */
-#define REAL_ROUNDING (0x1p-24f)
+#include "tracer/real.h"
 
 /* Rays in a batch, at most: a tile of 16 x 16 pixels. A multiple of any number of lanes. */
 enum { ZT_BATCH = 256, ZT_BATCH_LANES = 16 };

@@ -153,8 +153,7 @@ static zt_status prepare_objects(zt_tracer *tracer, const zt_scene *scene, zt_me
             ZT_TRY(prepare_mesh(&hittable, primitive, made, object, &worlds[i], meshes));
             if (hittable) tracer->meshes = meshes;
             break;
-        case ZT_SHAPE_GROUP:
-        case ZT_SHAPE_COUNT:
+        default:
             break;
         }
         if (!hittable) continue;

@@ -1,0 +1,34 @@
+/* What rays are made of: single or double precision. The files of the kernels are compiled once
+ * for each, with ZT_REAL_IS_DOUBLE defined or not. Space is relative to the camera: the
+ * subtraction is made in double precision before anything becomes `real`. */
+#ifndef ZT_TRACER_REAL_H
+#define ZT_TRACER_REAL_H
+
+#include <math.h>
+
+#if defined ZT_REAL_IS_DOUBLE
+typedef double real;
+#define REAL_ROUNDING 0x1p-53 /* the relative error of one rounding */
+static inline real real_sqrt(real a) { return sqrt(a); }
+static inline real real_abs(real a) { return fabs(a); }
+#else
+typedef float real;
+#define REAL_ROUNDING 0x1p-24f
+static inline real real_sqrt(real a) { return sqrtf(a); }
+static inline real real_abs(real a) { return fabsf(a); }
+#endif
+
+#define REAL_INFINITY ((real)INFINITY)
+
+static inline real real_max(real a, real b) { return a > b ? a : b; }
+static inline real real_min(real a, real b) { return a < b ? a : b; }
+
+typedef struct real3 {
+    real x, y, z;
+} real3;
+
+static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) {
+    return ax * bx + ay * by + az * bz;
+}
+
+#endif
