@@ -112,7 +112,7 @@ static void assert_vec(vec3 found, vec3 expected, double tolerance) {
 /* Where a point of a thing's own space is in the world, by the scene's own composition. */
 static vec3 in_world(const zt_scene *scene, int32_t index, vec3 point) {
     xform worlds[OBJECTS];
-    zt_scene_worlds(worlds, scene);
+    zt_scene_worlds(worlds, scene, (vec3){0, 0, 0});
     return xform_point(&worlds[index], point);
 }
 

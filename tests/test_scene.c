@@ -47,7 +47,7 @@ static void groups_within_groups(void **state) {
     enum { COUNT = sizeof objects / sizeof *objects };
     zt_scene scene = {.objects = objects, .object_count = COUNT};
     xform worlds[COUNT];
-    zt_scene_worlds(worlds, &scene);
+    zt_scene_worlds(worlds, &scene, (vec3){0, 0, 0});
     const vec3 p = {1, 0, 0};
     assert_vec(xform_point(&worlds[0], p), p);
     assert_vec(xform_point(&worlds[1], p), p);
@@ -56,6 +56,24 @@ static void groups_within_groups(void **state) {
     assert_vec(xform_point(&worlds[3], p), (vec3){5, 2, 0});
     assert_vec(xform_point(&worlds[4], p), (vec3){10, 1, 0});
     assert_vec(xform_point(&worlds[5], p), (vec3){5, 2, 0});
+}
+
+/* Seen from near by, what stands 1e12 away in groups keeps the digits of its place: adding up
+ * in the world first would leave steps of 1e-4. */
+static void far_groups_keep_digits(void **state) {
+    (void)state;
+    zt_object objects[] = {
+        group(-1, (vec3){1e12, -1e12, 0}, 0, 1),
+        group(0, (vec3){0, 0, 0.1}, pi / 2, 1),
+        {.shape = ZT_SHAPE_SPHERE, .parent = 1, .mesh = -1},
+        {.shape = ZT_SHAPE_SPHERE, .parent = -1, .mesh = -1},
+    };
+    enum { COUNT = sizeof objects / sizeof *objects };
+    zt_scene scene = {.objects = objects, .object_count = COUNT};
+    xform worlds[COUNT];
+    zt_scene_worlds(worlds, &scene, (vec3){1e12, -1e12 - 4, 1});
+    assert_vec(xform_point(&worlds[2], (vec3){1e-6, 0.2, 0}), (vec3){-0.2, 4 + 1e-6, -0.9});
+    assert_vec(xform_point(&worlds[3], (vec3){1e12, -1e12, 0}), (vec3){0, 4, -1});
 }
 
 /* Without rotation a camera looks along -z with y up; with one, it turns as any object does. */
@@ -176,10 +194,10 @@ static void test_winding(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_winding),       cmocka_unit_test(groups_within_groups),
-        cmocka_unit_test(camera_by_rotation), cmocka_unit_test(camera_by_aim),
-        cmocka_unit_test(camera_rolled),      cmocka_unit_test(camera_without_a_way),
-        cmocka_unit_test(mesh_corners),
+        cmocka_unit_test(test_winding),           cmocka_unit_test(groups_within_groups),
+        cmocka_unit_test(far_groups_keep_digits), cmocka_unit_test(camera_by_rotation),
+        cmocka_unit_test(camera_by_aim),          cmocka_unit_test(camera_rolled),
+        cmocka_unit_test(camera_without_a_way),   cmocka_unit_test(mesh_corners),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,8 @@ static bool within_mesh(findings *f, const zt_mesh *mesh, vec3 point) {
     return fabs(zt_mesh_winding(mesh, point)) > 0.5;
 }
 
-/* Whether the eye is within an object; a flattened one has no inside. */
+/* Whether the eye, where `world` has its origin, is within an object; a flattened one has no
+ * inside. */
 static bool within(findings *f, const zt_scene *scene, const zt_object *object,
                    const xform *world) {
     xform place = *world;
@@ -66,15 +67,14 @@ static bool within(findings *f, const zt_scene *scene, const zt_object *object,
         xform own = xform_place(p->position, p->rotation, p->scale);
         place = xform_mul(world, &own);
     }
-    xform inverse = xform_inverse(&place);
-    vec3 eye = xform_point(&inverse, scene->camera.position);
+    vec3 eye = xform_inverse(&place).shift;
     if (object->shape == ZT_SHAPE_MESH)
         return within_mesh(f, &scene->meshes[object->mesh], eye);
     return vec3_length(vec3_sub(eye, object->sphere.center)) < object->sphere.radius;
 }
 
 static void look_around(findings *f, const zt_scene *scene, xform *worlds, double time_s) {
-    zt_scene_worlds(worlds, scene);
+    zt_scene_worlds(worlds, scene, scene->camera.position);
     for (int32_t i = 0; i < scene->object_count; i++) {
         const zt_object *object = &scene->objects[i];
         if (object->shape != ZT_SHAPE_SPHERE && object->shape != ZT_SHAPE_MESH) continue;

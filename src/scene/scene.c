@@ -1,10 +1,12 @@
 #include "scene/scene.h"
 
-void zt_scene_worlds(xform *worlds, const zt_scene *scene) {
+void zt_scene_worlds(xform *worlds, const zt_scene *scene, vec3 origin) {
+    xform outermost = xform_identity();
+    outermost.shift = vec3_sub(outermost.shift, origin);
     for (int32_t i = 0; i < scene->object_count; i++) {
         int32_t parent = scene->objects[i].parent;
         if (parent < 0) {
-            worlds[i] = xform_identity();
+            worlds[i] = outermost;
             continue;
         }
         const zt_placement *p = &scene->objects[parent].placement;

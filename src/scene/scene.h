@@ -144,9 +144,10 @@ typedef struct zt_scene {
 } zt_scene;
 
 /* The transform of each object's group, all groups above included, written to `worlds`
- * (object_count of them): from the space that the object's numbers are given in to the world.
- */
-void zt_scene_worlds(xform *worlds, const zt_scene *scene);
+ * (object_count of them): from the space that the object's numbers are given in to the world
+ * as seen from `origin`. That is taken off before anything is added up, so that what is near it
+ * keeps all digits of its place, however far from the world's own origin it stands. */
+void zt_scene_worlds(xform *worlds, const zt_scene *scene, vec3 origin);
 
 /* The camera's axes in the world: x right, y up, z against the view; `shift` is its position.
  */

@@ -128,7 +128,7 @@ static zt_status prepare_objects(zt_tracer *tracer, const zt_scene *scene, zt_me
     zt_surface *surfaces = ZT_PUSH(arena, zt_surface, count);
     xform *worlds = ZT_PUSH(arena, xform, count);
     if (!primitives || !surfaces || !worlds) return ZT_EMEMORY;
-    zt_scene_worlds(worlds, scene);
+    zt_scene_worlds(worlds, scene, scene->camera.position);
     int32_t made = 0;
     for (int32_t i = 0; i < scene->object_count; i++) {
         const zt_object *object = &scene->objects[i];
@@ -137,7 +137,6 @@ static zt_status prepare_objects(zt_tracer *tracer, const zt_scene *scene, zt_me
         zt_surface *surface = &surfaces[made];
         *primitive = (zt_primitive){.object = i, .mesh = -1};
         *surface = (zt_surface){0};
-        worlds[i].shift = vec3_sub(worlds[i].shift, scene->camera.position);
         bool hittable = false;
         switch (object->shape) {
         case ZT_SHAPE_PLANE:
