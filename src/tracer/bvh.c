@@ -1,0 +1,67 @@
+/* This side of the door to Embree. */
+#include "tracer/bvh.h"
+
+#include <stdlib.h>
+
+#include "tracer/embree.h"
+
+struct zt_bvh_builder {
+    const zt_embree_door *door;
+    zt_embree *embree; /* NULL until the first hierarchy */
+    int threads;
+    zt_listener listener;
+};
+
+zt_status zt_bvh_open(zt_bvh_builder **out, int threads, zt_listener listener) {
+    zt_bvh_builder *builder = *out = calloc(1, sizeof *builder);
+    if (!builder) return ZT_EMEMORY;
+    builder->threads = threads;
+    builder->listener = listener;
+    return ZT_OK;
+}
+
+void zt_bvh_close(zt_bvh_builder **slot) {
+    if (!*slot) return;
+    if ((*slot)->embree) (*slot)->door->close(&(*slot)->embree);
+    free(*slot);
+    *slot = NULL;
+}
+
+static zt_status start(zt_bvh_builder *builder) {
+    if (builder->embree) return ZT_OK;
+    builder->door = zt_module_door("embree", "meshes and crowds of objects", builder->listener);
+    if (!builder->door) return ZT_EUNSUPPORTED;
+    return builder->door->open(&builder->embree, builder->threads, builder->listener);
+}
+
+zt_status zt_bvh_of_triangles(zt_bvh **out, zt_bvh_builder *builder, const float *positions,
+                              int32_t vertex_count, const uint32_t *triangles,
+                              int32_t triangle_count) {
+    *out = NULL;
+    ZT_TRY(start(builder));
+    return builder->door->of_triangles(out, builder->embree, positions, vertex_count, triangles,
+                                       triangle_count);
+}
+
+zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
+                          int32_t box_count) {
+    ZT_TRY(start(builder));
+    return builder->door->of_boxes(bvh, builder->embree, boxes, box_count);
+}
+
+void zt_bvh_free(zt_bvh **bvh) {
+    if (*bvh) (*bvh)->door->free(bvh);
+}
+
+void zt_bvh_nearest(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
+    bvh->door->nearest(bvh, rays, kind);
+}
+
+void zt_bvh_any(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
+    bvh->door->any(bvh, rays, kind);
+}
+
+void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
+                 void *user) {
+    bvh->door->look(bvh, rays, kind, visit, user);
+}
