@@ -71,6 +71,11 @@ static void misuse(void **state) {
         {"render film.yaml --frames -3", "--frames -3: must be"},
         {"render film.yaml --frames 4-6", "no frame 6: the film has frames 0 to 5"},
         {"render film.yaml --size 33x18 -o film.mp4", "33"},
+        {"render film.yaml --preset quick -o film.mp4", "ultrafast superfast veryfast faster"},
+        {"preview film.yaml --preset 3", "no preset \"3\""},
+        {"render film.yaml --preset fast -o film.hash", "no option \"preset\" for checksums"},
+        {"frame film.yaml 1 --preset fast", "no option \"preset\" for images"},
+        {"check film.yaml --preset fast", "check takes no --preset"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         run *r = zoetrope(cases[i].arguments);

@@ -14,7 +14,7 @@ static const zt_output_format format = {16, 12, {24, 1}, ZT_VIEW_SRGB, 0};
 static zt_output *open_output(const char *target) {
     heard h;
     zt_output *output;
-    if (zt_output_open(&output, target, &format, listener_of(&h)) != ZT_OK)
+    if (zt_output_open(&output, target, &format, NULL, listener_of(&h)) != ZT_OK)
         fail_msg("%s", h.text);
     return output;
 }
@@ -22,7 +22,8 @@ static zt_output *open_output(const char *target) {
 static void assert_refused(const char *target, const char *words) {
     heard h;
     zt_output *output = (zt_output *)&h;
-    assert_int_not_equal(zt_output_open(&output, target, &format, listener_of(&h)), ZT_OK);
+    assert_int_not_equal(zt_output_open(&output, target, &format, NULL, listener_of(&h)),
+                         ZT_OK);
     assert_null(output);
     assert_told(&h, words);
 }
@@ -131,7 +132,8 @@ static void single_image(void **state) {
 
     heard h;
     zt_output *output;
-    assert_int_equal(zt_output_open(&output, "one/two.png", &format, listener_of(&h)), ZT_OK);
+    assert_int_equal(zt_output_open(&output, "one/two.png", &format, NULL, listener_of(&h)),
+                     ZT_OK);
     write_frames(output, frames, 1);
     zt_image *image = picture(format.width, format.height, 6);
     assert_int_equal(zt_output_write(output, image, 6), ZT_EARGUMENT);
@@ -146,7 +148,7 @@ static void single_image(void **state) {
     /* Told beforehand that more will come, it is refused before the first. */
     zt_output_format several = format;
     several.frame_count = 2;
-    assert_int_equal(zt_output_open(&output, "one/three.png", &several, listener_of(&h)),
+    assert_int_equal(zt_output_open(&output, "one/three.png", &several, NULL, listener_of(&h)),
                      ZT_EARGUMENT);
     assert_null(output);
     assert_int_equal(entry_count("one"), 2);
@@ -217,7 +219,8 @@ static void full_disk(void **state) {
         char *bytes = file_bytes(files[i], &size);
         heard h;
         zt_output *output;
-        assert_int_equal(zt_output_open(&output, targets[i], &format, listener_of(&h)), ZT_OK);
+        assert_int_equal(zt_output_open(&output, targets[i], &format, NULL, listener_of(&h)),
+                         ZT_OK);
         zt_image *image = picture(format.width, format.height, 2);
         disk_has(20);
         assert_int_equal(zt_output_write(output, image, 1), ZT_EFILE);
@@ -247,13 +250,15 @@ static void rules(void **state) {
     zt_image *other = picture(format.height, format.width, 0);
     const char *const targets[] = {"rules/a.mp4", "rules/##.png", "rules/a.hash"};
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(zt_output_open(&output, targets[i], &format, listener_of(&h)), ZT_OK);
+        assert_int_equal(zt_output_open(&output, targets[i], &format, NULL, listener_of(&h)),
+                         ZT_OK);
         assert_int_equal(zt_output_write(output, other, 0), ZT_EARGUMENT);
         assert_told(&h, "12x16");
         assert_int_equal(zt_output_write(output, image, 0), ZT_EARGUMENT);
         assert_int_equal(zt_output_close(&output), ZT_OK);
 
-        assert_int_equal(zt_output_open(&output, targets[i], &format, listener_of(&h)), ZT_OK);
+        assert_int_equal(zt_output_open(&output, targets[i], &format, NULL, listener_of(&h)),
+                         ZT_OK);
         assert_int_equal(zt_output_write(output, image, -4), ZT_OK);
         assert_int_equal(zt_output_write(output, image, 9), ZT_OK);
         assert_int_equal(zt_output_write(output, image, 9), ZT_EARGUMENT);
@@ -268,14 +273,45 @@ static void rules(void **state) {
         {16, 65538, {24, 1}, ZT_VIEW_RAW, 0}, {16, 12, {0, 1}, ZT_VIEW_RAW, 0},
         {16, 12, {24, 0}, ZT_VIEW_RAW, 0},    {16, 12, {-24, -1}, ZT_VIEW_RAW, 0}};
     for (int i = 0; i < 6; i++) {
-        assert_int_equal(zt_output_open(&output, "wrong/a.mp4", &wrong[i], listener_of(&h)),
-                         ZT_EARGUMENT);
+        assert_int_equal(
+            zt_output_open(&output, "wrong/a.mp4", &wrong[i], NULL, listener_of(&h)),
+            ZT_EARGUMENT);
         assert_null(output);
         assert_int_equal(h.error_count, 1);
     }
     assert_false(exists("wrong"));
     zt_image_free(&image);
     zt_image_free(&other);
+}
+
+/* An option that an output does not know is refused before anything is made, and the one that
+ * may have been meant is named; a list may be empty. */
+static void unknown_options(void **state) {
+    (void)state;
+    const struct {
+        const char *target, *name, *words;
+    } cases[] = {
+        {"options/a.hash", "preset", "no option \"preset\" for checksums"},
+        {"options/a.png", "preset", "no option \"preset\" for images"},
+        {"options/a.mp4", "presets",
+         "no option \"presets\" for a movie; did you mean \"preset\"?"},
+        {"options/a.mp4", "", "no option \"\" for a movie"},
+    };
+    zt_output *output;
+    for (int i = 0; i < 4; i++) {
+        heard h;
+        const zt_output_option options[] = {{cases[i].name, "fast"}, {NULL, NULL}};
+        assert_int_equal(
+            zt_output_open(&output, cases[i].target, &format, options, listener_of(&h)),
+            ZT_EARGUMENT);
+        assert_null(output);
+        assert_told(&h, cases[i].words);
+    }
+    assert_false(exists("options"));
+    const zt_output_option none[] = {{NULL, NULL}};
+    heard h;
+    assert_int_equal(zt_output_open(&output, "a.hash", &format, none, listener_of(&h)), ZT_OK);
+    assert_int_equal(zt_output_close(&output), ZT_OK);
 }
 
 /* A line for each frame, all of one length; the sum is XXH3's, and changes with the least of
@@ -322,7 +358,7 @@ int main(void) {
         cmocka_unit_test(single_image),      cmocka_unit_test(unknown_endings),
         cmocka_unit_test(unwritable_places), cmocka_unit_test(forbidden_directory),
         cmocka_unit_test(full_disk),         cmocka_unit_test(rules),
-        cmocka_unit_test(checksums),
+        cmocka_unit_test(unknown_options),   cmocka_unit_test(checksums),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

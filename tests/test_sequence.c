@@ -129,7 +129,7 @@ static void test_sequence(void **state) {
         zt_watcher watcher = {count_progress, stop_when_counted, &count};
         zt_output *output;
         char path[] = "test_sequence.hash";
-        assert_int_equal(zt_output_open(&output, path, &format, (zt_listener){0}), ZT_OK);
+        assert_int_equal(zt_output_open(&output, path, &format, NULL, (zt_listener){0}), ZT_OK);
         assert_int_equal(zt_renderer_sequence(renderer, 2, 17, output, &watcher),
                          stop ? ZT_ESTOPPED : ZT_OK);
         assert_int_equal(zt_output_close(&output), ZT_OK);

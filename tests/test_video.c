@@ -20,11 +20,17 @@ enum { FRAMES_MAX = 512 };
 
 static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0};
 
-static zt_output *open_movie(const char *path, const zt_output_format *format) {
+static zt_output *open_movie_by(const char *path, const zt_output_format *format,
+                                const zt_output_option *options) {
     heard h;
     zt_output *output;
-    if (zt_output_open(&output, path, format, listener_of(&h)) != ZT_OK) fail_msg("%s", h.text);
+    if (zt_output_open(&output, path, format, options, listener_of(&h)) != ZT_OK)
+        fail_msg("%s", h.text);
     return output;
+}
+
+static zt_output *open_movie(const char *path, const zt_output_format *format) {
+    return open_movie_by(path, format, NULL);
 }
 
 /* Frames 7, 8, .. of moving pictures: that a film begins elsewhere does not show in the movie.
@@ -387,8 +393,8 @@ static void impossible_sizes(void **state) {
         heard h;
         zt_output *output;
         zt_output_format format = {sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB, 0};
-        assert_int_not_equal(zt_output_open(&output, "sizes/a.mp4", &format, listener_of(&h)),
-                             ZT_OK);
+        assert_int_not_equal(
+            zt_output_open(&output, "sizes/a.mp4", &format, NULL, listener_of(&h)), ZT_OK);
         assert_null(output);
         assert_told(&h, sizes[i].words);
         assert_false(exists("sizes/a.mp4") || exists("sizes/a.mp4.part"));
@@ -398,6 +404,50 @@ static void impossible_sizes(void **state) {
     film m = film_open("least.mp4");
     assert_int_equal(m.packet_count, 3);
     film_close(&m);
+}
+
+/* A movie by a preset; of two the later one counts. */
+static void write_by_preset(const char *path, const char *first, const char *preset) {
+    const zt_output_option options[] = {{"preset", first}, {"preset", preset}, {NULL, NULL}};
+    zt_output *output = open_movie_by(path, &small, options);
+    for (int f = 0; f < 9; f++) {
+        zt_image *image = picture(small.width, small.height, f);
+        assert_int_equal(zt_output_write(output, image, f), ZT_OK);
+        zt_image_free(&image);
+    }
+    assert_int_equal(zt_output_close(&output), ZT_OK);
+}
+
+/* Each preset makes a film of its own, which names x264's search (ultrafast: dia, placebo:
+ * tesa); without one it is veryfast's, to the bit. */
+static void presets(void **state) {
+    (void)state;
+    const char *const names[] = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                 "medium",    "slow",      "slower",   "veryslow", "placebo"};
+    write_movie("without.mp4", &small, 9);
+    for (int i = 0; i < 10; i++) {
+        write_by_preset("by.mp4", "medium", names[i]);
+        assert_film("by.mp4", 9, small.rate);
+        size_t size;
+        char *bytes = file_bytes("by.mp4", &size);
+        const char *search = i < 2 ? "me=dia" : i < 7 ? "me=hex" : i < 9 ? "me=umh" : "me=tesa";
+        if (!memmem(bytes, size, search, strlen(search)))
+            fail_msg("%s: no %s", names[i], search);
+        free(bytes);
+    }
+    write_by_preset("by.mp4", "slow", "veryfast");
+    write_by_preset("slow.mp4", "veryfast", "slow");
+    assert_false(same_files("by.mp4", "slow.mp4"));
+    const char *const wrong[] = {"", "2", "Fast", "medium ", "veryfast,slow"};
+    for (int i = 0; i < 5; i++) {
+        const zt_output_option options[] = {{"preset", wrong[i]}, {NULL, NULL}};
+        heard h;
+        zt_output *output;
+        assert_int_equal(zt_output_open(&output, "no/a.mp4", &small, options, listener_of(&h)),
+                         ZT_EARGUMENT);
+        assert_told(&h, "ultrafast superfast veryfast faster fast medium slow slower veryslow");
+        assert_false(exists("no"));
+    }
 }
 
 /* The film's name is a name: it is never taken for a protocol, a pattern or a format. */
@@ -460,7 +510,8 @@ static void full_disk(void **state) {
         write_movie("older.mp4", &small, 2);
         heard h;
         zt_output *output;
-        assert_int_equal(zt_output_open(&output, "full.mp4", &format, listener_of(&h)), ZT_OK);
+        assert_int_equal(zt_output_open(&output, "full.mp4", &format, NULL, listener_of(&h)),
+                         ZT_OK);
         disk_has(sizes[i]);
         zt_status status = ZT_OK;
         for (int f = 0; f < 100; f++) {
@@ -505,6 +556,7 @@ int main(void) {
         cmocka_unit_test(colours),
         cmocka_unit_test(chroma_is_left),
         cmocka_unit_test(impossible_sizes),
+        cmocka_unit_test(presets),
         cmocka_unit_test(names_are_names),
         cmocka_unit_test(replaced_when_complete),
         cmocka_unit_test(interrupted_anywhere),

@@ -23,7 +23,18 @@ typedef struct zt_output_format {
     int64_t frame_count; /* how many will come; 0 where that is not known */
 } zt_output_format;
 
-/* Opens an output, chosen by the name of `target`:
+/* A wish for how an output is written. A movie knows
+ *
+ * - preset: how much time the encoder takes for a frame, by x264's names: ultrafast, superfast,
+ * veryfast (where nothing is wished for), faster, fast, medium, slow, slower, veryslow,
+ * placebo.
+ */
+typedef struct zt_output_option {
+    const char *name, *value;
+} zt_output_option;
+
+/* Opens an output, chosen by the name of `target`. `options` end with one whose name is NULL,
+ * and may be NULL; of two with one name the later counts.
  *
  * - film.mp4: a movie, H.264.
  * - frames.####.png, frames.%04d.exr: numbered images, also .tif .tiff .jpg .jpeg; one # for
@@ -32,11 +43,11 @@ typedef struct zt_output_format {
  * - film.hash: a line for each frame, with its number, its size, and the XXH3 128-bit checksum
  * of its float pixels, in fixed columns.
  *
- * All that can be refused is refused here, before the first image is made: unknown names, odd
- * sizes for a movie, a directory that cannot be written. Missing directories are made. Nothing
- * appears under its final name before it is complete. */
+ * All that can be refused is refused here, before the first image is made: unknown names and
+ * options, odd sizes for a movie, a directory that cannot be written. Missing directories are
+ * made. Nothing appears under its final name before it is complete. */
 zt_status zt_output_open(zt_output **output, const char *target, const zt_output_format *format,
-                         zt_listener listener);
+                         const zt_output_option *options, zt_listener listener);
 
 /* Writes the image of `frame`; frames come in rising order. The image stays the caller's. */
 zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t frame);

@@ -5,7 +5,8 @@
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
-#define ONE_FRAME   (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS))
+#define ONE_FRAME                                                                              \
+    (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRESET))
 
 static const char images[] =
     "  film.mp4         a movie, H.264\n"
@@ -45,6 +46,8 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
     [ZT_OPTION_THREADS] = {"threads", 0, "N",
                            "instead of one a core; the images stay the same"},
+    [ZT_OPTION_PRESET] = {"preset", 0, "medium",
+                          "of the movie's encoder, ultrafast .. veryfast .. placebo"},
     [ZT_OPTION_SET] = {"set", 0, "NAME=40",
                        "in place of what FILE says: lamp.intensity=40; any number of times"},
     [ZT_OPTION_QUIET] = {"quiet", 'q', NULL, "print nothing but errors"},

@@ -35,6 +35,7 @@ typedef enum zt_option {
     ZT_OPTION_SIZE,
     ZT_OPTION_SAMPLES,
     ZT_OPTION_THREADS,
+    ZT_OPTION_PRESET,
     ZT_OPTION_SET,
     ZT_OPTION_QUIET,
     ZT_OPTION_HELP,

@@ -94,12 +94,14 @@ static void say_interrupted(const zt_progress *progress, const char *target) {
 
 /* Opens the output, renders the frames into it, and closes it whatever happened. */
 static zt_status write_frames(zt_renderer *renderer, int64_t first, int64_t last,
-                              const char *target, zt_report *report) {
+                              const char *target, const zt_output_option *wishes,
+                              zt_report *report) {
     zt_output_format format = zt_renderer_format(renderer);
     format.frame_count = last - first + 1;
     zt_output *output = NULL;
     listen_for_interrupts();
-    zt_status status = zt_output_open(&output, target, &format, zt_report_listener(report));
+    zt_status status =
+        zt_output_open(&output, target, &format, wishes, zt_report_listener(report));
     if (status != ZT_OK) return status;
     zt_progress progress = zt_progress_begin(report, last - first + 1);
     zt_watcher watcher = {show_progress, stopped, &progress};
@@ -122,7 +124,8 @@ static zt_status render(const zt_options *options, const zt_animation *animation
     zt_renderer *renderer = NULL;
     zt_status status =
         zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
-    if (status == ZT_OK) status = write_frames(renderer, first, last, target, report);
+    if (status == ZT_OK)
+        status = write_frames(renderer, first, last, target, options->output_options, report);
     zt_renderer_close(&renderer);
     free(target);
     return status;

@@ -205,6 +205,17 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
     return true;
 }
 
+/* Options that are the output's own, by the same names. */
+static const zt_option of_output[] = {ZT_OPTION_PRESET};
+
+static void pass_on(zt_options *options, const char *const *values) {
+    zt_output_option *next = options->output_options;
+    for (size_t i = 0; i < sizeof of_output / sizeof *of_output; i++)
+        if (values[of_output[i]])
+            *next++ =
+                (zt_output_option){zt_options_known[of_output[i]].name, values[of_output[i]]};
+}
+
 static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
     const zt_command_row *command = &zt_commands[options->command];
     const char *const *values = sorted->values;
@@ -219,6 +230,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
+    pass_on(options, values);
     return (!frames || read_frames(options, frames, report)) &&
            (!size || read_size(settings, size, report)) &&
            (!samples ||

@@ -19,9 +19,10 @@ typedef struct zt_options {
     const char *question;          /* of explain: "ball.center@37" */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;
-    bool all_frames;             /* else first .. last, both included */
-    int64_t first, last;         /* 0 <= first <= last */
-    zt_render_settings settings; /* zero where not given */
+    bool all_frames;                                  /* else first .. last, both included */
+    int64_t first, last;                              /* 0 <= first <= last */
+    zt_render_settings settings;                      /* zero where not given */
+    zt_output_option output_options[ZT_OPTION_COUNT]; /* the last has no name */
     bool quiet;
     zt_override sets[ZT_SETS_MAX]; /* what --set replaces in the description */
     int set_count;

@@ -48,8 +48,8 @@ static zt_status open_file(checksum *sums, const char *target) {
 }
 
 static zt_status open_checksum(void **state, const char *target, const zt_output_format *format,
-                               zt_listener listener) {
-    (void)format;
+                               const zt_output_option *options, zt_listener listener) {
+    (void)format, (void)options;
     checksum *sums = calloc(1, sizeof *sums);
     if (!sums) return ZT_EMEMORY;
     sums->listener = listener;
@@ -72,5 +72,6 @@ static zt_status write_checksum(void *state, const zt_image *image, int64_t fram
 }
 
 static const char *const endings[] = {".hash", NULL};
-const zt_sink zt_sink_checksum = {"checksums", endings, open_checksum, write_checksum,
-                                  close_checksum};
+static const char *const no_options[] = {NULL};
+const zt_sink zt_sink_checksum = {"checksums",   endings,        no_options,
+                                  open_checksum, write_checksum, close_checksum};

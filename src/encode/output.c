@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "encode/sink.h"
 
-static const zt_sink *const sinks[] = {&zt_sink_video, &zt_sink_stills, &zt_sink_checksum};
+static const zt_sink *const sinks[] = {&zt_sink_movie, &zt_sink_stills, &zt_sink_checksum};
 enum { SINK_COUNT = sizeof sinks / sizeof *sinks, LIST_MAX = 256 };
 
 struct zt_output {
@@ -57,6 +57,30 @@ static zt_status refuse_target(const char *target, zt_listener listener) {
     return ZT_EUNSUPPORTED;
 }
 
+/* Refuses the first option that the sink does not know. */
+static zt_status check_options(const char *target, const zt_sink *sink,
+                               const zt_output_option *options, zt_listener listener) {
+    for (; options && options->name; options++) {
+        zt_nearest nearest = zt_nearest_to(options->name);
+        const char *const *known = sink->options;
+        while (*known && !zt_text_equal(*known, options->name))
+            zt_nearest_try(&nearest, *known++);
+        if (*known) continue;
+        zt_tell(listener, ZT_ERROR, "cannot write %s: there is no option \"%s\" for %s%s%s%s",
+                target, options->name, sink->what, nearest.best ? "; did you mean \"" : "",
+                nearest.best ? nearest.best : "", nearest.best ? "\"?" : "");
+        return ZT_EARGUMENT;
+    }
+    return ZT_OK;
+}
+
+const char *zt_sink_option(const zt_output_option *options, const char *name) {
+    const char *value = NULL;
+    for (; options && options->name; options++)
+        if (zt_text_equal(options->name, name)) value = options->value;
+    return value;
+}
+
 static zt_status check_format(const zt_output_format *format, zt_listener listener) {
     bool size_legal = format->width >= 1 && format->width <= ZT_IMAGE_SIDE_MAX &&
                       format->height >= 1 && format->height <= ZT_IMAGE_SIDE_MAX;
@@ -67,15 +91,16 @@ static zt_status check_format(const zt_output_format *format, zt_listener listen
 }
 
 zt_status zt_output_open(zt_output **out, const char *target, const zt_output_format *format,
-                         zt_listener listener) {
+                         const zt_output_option *options, zt_listener listener) {
     *out = NULL;
     ZT_TRY(check_format(format, listener));
     const zt_sink *sink = sink_of(target);
     if (!sink) return refuse_target(target, listener);
+    ZT_TRY(check_options(target, sink, options, listener));
     zt_output *output = calloc(1, sizeof *output);
     if (!output) return ZT_EMEMORY;
     *output = (zt_output){.sink = sink, .format = *format, .listener = listener};
-    zt_status status = sink->open(&output->state, target, format, listener);
+    zt_status status = sink->open(&output->state, target, format, options, listener);
     if (status == ZT_OK)
         *out = output;
     else

@@ -10,9 +10,11 @@
 typedef struct zt_sink {
     const char *what;           /* for messages: "a movie" */
     const char *const *endings; /* that it accepts, each with its dot; NULL after the last */
-    /* Makes *state; tells why not. Everything that can be refused is refused here. */
+    const char *const *options; /* that it knows, by name; NULL after the last */
+    /* Makes *state; tells why not. Everything that can be refused is refused here; but that it
+     * knows all options is seen to. */
     zt_status (*open)(void **state, const char *target, const zt_output_format *format,
-                      zt_listener listener);
+                      const zt_output_option *options, zt_listener listener);
     /* After a failure, which is told, only `close` is called. */
     zt_status (*write)(void *state, const zt_image *image, int64_t frame);
     /* Frees the state. `keep`: complete the files and give them their names, and tell where
@@ -20,6 +22,9 @@ typedef struct zt_sink {
     zt_status (*close)(void *state, bool keep);
 } zt_sink;
 
-extern const zt_sink zt_sink_stills, zt_sink_video, zt_sink_checksum;
+extern const zt_sink zt_sink_stills, zt_sink_movie, zt_sink_checksum;
+
+/* What is wished for; NULL where nothing is. */
+const char *zt_sink_option(const zt_output_option *options, const char *name);
 
 #endif

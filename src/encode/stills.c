@@ -88,7 +88,8 @@ static zt_status refuse_several(const stills *images) {
 }
 
 static zt_status open_stills(void **state, const char *target, const zt_output_format *format,
-                             zt_listener listener) {
+                             const zt_output_option *options, zt_listener listener) {
+    (void)options;
     stills *images = calloc(1, sizeof *images);
     if (!images) return ZT_EMEMORY;
     images->view = format->view;
@@ -129,5 +130,6 @@ static zt_status write_stills(void *state, const zt_image *image, int64_t frame)
     return write_image(images, image, images->before);
 }
 
-const zt_sink zt_sink_stills = {"images", zt_image_file_endings, open_stills, write_stills,
-                                close_stills};
+static const char *const no_options[] = {NULL};
+const zt_sink zt_sink_stills = {"images",    zt_image_file_endings, no_options,
+                                open_stills, write_stills,          close_stills};

@@ -1,4 +1,4 @@
-/* A movie: H.264 in MP4. The one door to FFmpeg.
+/* A movie: H.264 in MP4. The one door to FFmpeg, a module.
  *
  * Same bits: x264 gives the same stream for the same number of threads, so that number is fixed
  * here and does not follow the machine's. */
@@ -15,14 +15,11 @@
 #include "base/diag.h"
 #include "base/text.h"
 #include "encode/aside.h"
-#include "encode/sink.h"
+#include "encode/video.h"
 #include "image/develop.h"
 
-/* Measured at 1280x720 with ray-traced spheres on a checkered floor: "veryfast" takes 13 ms of
- * one core a frame, "medium" 27 (and 70 where the picture is rough); the files are as large,
- * and 48.9 dB against 50.3 is not seen. Four threads take a tenth more of the cores than one
- * does. */
-static const char preset[] = "veryfast", quality[] = "18" /* CRF */;
+static const char quality[] = "18" /* CRF */;
+/* Four threads take a tenth more of the cores than one does. */
 enum { THREAD_COUNT = 4, GOP_S = 2, GOP_FRAMES_MAX = 250, TIMESCALE_MIN = 10000 };
 
 typedef struct movie {
@@ -102,6 +99,23 @@ static void tag_encoder(AVCodecContext *encoder, const AVFrame *frame) {
     encoder->chroma_sample_location = frame->chroma_location;
 }
 
+/* The encoder's presets, from the fastest on. */
+static const char *const presets[] = {"ultrafast", "superfast", "veryfast", "faster",
+                                      "fast",      "medium",    "slow",     "slower",
+                                      "veryslow",  "placebo",   NULL};
+
+static zt_status check_preset(const char *target, const char *preset, zt_listener listener) {
+    char list[160] = "";
+    size_t length = 0;
+    for (const char *const *known = presets; *known; known++) {
+        if (zt_text_equal(*known, preset)) return ZT_OK;
+        length += (size_t)snprintf(list + length, sizeof list - length, " %s", *known);
+    }
+    zt_tell(listener, ZT_ERROR, "cannot write %s: there is no preset \"%s\"; there are%s",
+            target, preset, list);
+    return ZT_EARGUMENT;
+}
+
 static zt_status make_frame(movie *m, AVFrame **frame, const zt_output_format *format,
                             enum AVPixelFormat pixels) {
     *frame = av_frame_alloc();
@@ -147,7 +161,7 @@ static int gop_frames(AVRational rate) {
     return frames < 1 ? 1 : frames > GOP_FRAMES_MAX ? GOP_FRAMES_MAX : (int)frames;
 }
 
-static zt_status open_encoder(movie *m, AVRational rate) {
+static zt_status open_encoder(movie *m, AVRational rate, const zt_video_settings *settings) {
     const AVCodec *codec = avcodec_find_encoder_by_name("libx264");
     if (!codec) {
         zt_tell(m->listener, ZT_ERROR, "cannot write %s: this FFmpeg has no libx264",
@@ -166,7 +180,7 @@ static zt_status open_encoder(movie *m, AVRational rate) {
     encoder->thread_count = THREAD_COUNT;
     encoder->flags = (int)(AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_GLOBAL_HEADER);
     tag_encoder(encoder, m->yuv);
-    AV_TRY(m, av_opt_set(encoder->priv_data, "preset", preset, 0));
+    AV_TRY(m, av_opt_set(encoder->priv_data, "preset", settings->preset, 0));
     AV_TRY(m, av_opt_set(encoder->priv_data, "crf", quality, 0));
     AV_TRY(m, av_opt_set(encoder->priv_data, "x264-params", "force-cfr=1", 0));
     AV_TRY(m, avcodec_open2(encoder, codec, NULL));
@@ -211,7 +225,8 @@ static void movie_free(movie *m) {
     free(m);
 }
 
-static zt_status open_all(movie *m, const char *target, const zt_output_format *format) {
+static zt_status open_all(movie *m, const char *target, const zt_output_format *format,
+                          const zt_video_settings *settings) {
     AVRational rate;
     av_reduce(&rate.num, &rate.den, format->rate.num, format->rate.den, INT32_MAX);
     ZT_TRY(zt_aside_open(&m->aside, target, m->listener));
@@ -219,22 +234,23 @@ static zt_status open_all(movie *m, const char *target, const zt_output_format *
     ZT_TRY(make_frame(m, &m->yuv, format, AV_PIX_FMT_YUV420P));
     tag_frame(m->yuv);
     ZT_TRY(make_converter(m));
-    ZT_TRY(open_encoder(m, rate));
+    ZT_TRY(open_encoder(m, rate, settings));
     ZT_TRY(open_container(m, rate));
     m->packet = av_packet_alloc();
     return m->packet ? ZT_OK : ZT_EMEMORY;
 }
 
 static zt_status open_movie(void **state, const char *target, const zt_output_format *format,
-                            zt_listener listener) {
+                            const zt_video_settings *settings, zt_listener listener) {
     ZT_TRY(check_size(target, format, listener));
+    ZT_TRY(check_preset(target, settings->preset, listener));
     call_once(&listening_once, listen_to_libav);
     *complaint = '\0';
     movie *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
     m->view = format->view;
     m->listener = listener;
-    zt_status status = open_all(m, target, format);
+    zt_status status = open_all(m, target, format, settings);
     if (status == ZT_OK)
         *state = m;
     else
@@ -284,5 +300,4 @@ static zt_status close_movie(void *state, bool keep) {
     return status;
 }
 
-static const char *const endings[] = {".mp4", NULL};
-const zt_sink zt_sink_video = {"a movie", endings, open_movie, write_movie, close_movie};
+ZT_MODULE_DOOR(zt_video_door, video) = {open_movie, write_movie, close_movie};

@@ -100,7 +100,7 @@ static void render_demo(void) {
     must(zt_renderer_open(&renderer, animation, &settings, listener), "demo");
     zt_output_format format = zt_renderer_format(renderer);
     double wall = now_s(CLOCK_MONOTONIC), cpu = now_s(CLOCK_PROCESS_CPUTIME_ID);
-    must(zt_output_open(&output, "bench-demo.mp4", &format, listener), "bench-demo.mp4");
+    must(zt_output_open(&output, "bench-demo.mp4", &format, NULL, listener), "bench-demo.mp4");
     must(zt_renderer_sequence(renderer, 0, film->frame_count - 1, output, NULL), "demo");
     must(zt_output_close(&output), "bench-demo.mp4");
     wall = now_s(CLOCK_MONOTONIC) - wall;
