@@ -36,7 +36,8 @@ static inline void hear(void *user, const zt_message *message) {
 
 static inline void read_path(reading *r, const char *path, const zt_place *place) {
     *r = (reading){0};
-    r->status = zt_ply_read(&r->mesh, &r->arena, path, place, (zt_listener){hear, r});
+    r->status = zt_ply_read(&r->mesh, &r->arena, path, ZT_PLY_NORMALS | ZT_PLY_COLORS, place,
+                            (zt_listener){hear, r});
 }
 
 static inline void read_bytes(reading *r, const void *bytes, size_t size) {

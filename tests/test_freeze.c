@@ -16,11 +16,10 @@ static const double pi = 3.14159265358979323846;
 
 static const zt_listener deaf;
 
-enum { OBJECTS = 10, LIGHTS = 4, MATERIALS = 3 };
-
-/* One thing of each owner, and a second one that must stay as it is. */
-static const zt_owner shapes[5] = {ZT_OWNER_PLANE, ZT_OWNER_SPHERE, ZT_OWNER_TRIANGLE,
-                                   ZT_OWNER_MESH, ZT_OWNER_GROUP};
+/* One object of each shape in the order of the owners, and a second one that must stay as it
+ * is. */
+enum { SHAPES = ZT_OWNER_GROUP - ZT_OWNER_PLANE + 1, OBJECTS = 2 * SHAPES };
+enum { LIGHTS = 4, MATERIALS = 3, OTHER_SPHERE = SHAPES + 1 };
 static const zt_mesh meshes[2] = {{.triangle_count = 70000}, {.triangle_count = 12}};
 
 static zt_animation *create(void) {
@@ -42,8 +41,10 @@ static zt_animation *create(void) {
     for (int i = 0; i < LIGHTS; i++)
         zt_property_rest(rest, i % 2 ? ZT_OWNER_POINT : ZT_OWNER_AMBIENT, i);
     for (int i = 0; i < OBJECTS; i++) {
-        zt_property_rest(rest, shapes[i % 5], i);
-        if (rest->objects[i].shape == ZT_SHAPE_MESH) rest->objects[i].mesh = i / 5;
+        zt_object *object = &rest->objects[i];
+        zt_property_rest(rest, (zt_owner)(ZT_OWNER_PLANE + i % SHAPES), i);
+        if (object->shape == ZT_SHAPE_MESH) object->mesh = i / SHAPES;
+        if (object->shape == ZT_SHAPE_TORUS) object->torus.radius = 2;
     }
     return animation;
 }
@@ -80,8 +81,7 @@ static void assert_reads(const zt_scene *scene, zt_owner owner, const char *name
 
 /* Where a thing's fields are in a scene, told by the scene's own structs. */
 static int first_of(zt_owner owner) {
-    for (int i = 0; i < 5; i++)
-        if (shapes[i] == owner) return i;
+    if (owner >= ZT_OWNER_PLANE) return (int)(owner - ZT_OWNER_PLANE);
     return owner == ZT_OWNER_POINT ? 1 : 0;
 }
 
@@ -160,7 +160,7 @@ static void many_properties_move(void **state) {
     (void)state;
     zt_animation *animation = create();
     add_track(animation, ZT_OWNER_SPHERE, "center", 1, 0, 8);
-    add_track(animation, ZT_OWNER_SPHERE, "radius", 6, 2, 4);
+    add_track(animation, ZT_OWNER_SPHERE, "radius", OTHER_SPHERE, 2, 4);
     add_track(animation, ZT_OWNER_CAMERA, "fov", 0, 1, 2);
     add_track(animation, ZT_OWNER_POINT, "intensity", 3, 10, 30);
     add_track(animation, ZT_OWNER_MATERIAL, "color", 2, 1, 0);
@@ -171,8 +171,8 @@ static void many_properties_move(void **state) {
         assert_int_equal(zt_animation_freeze(&scene, animation, 1.5, &frame, deaf), ZT_OK);
         assert_reads(&scene, ZT_OWNER_SPHERE, "center", 1, 2);
         assert_reads(&scene, ZT_OWNER_SPHERE, "radius", 1, 0);
-        assert_reads(&scene, ZT_OWNER_SPHERE, "center", 6, 0);
-        assert_reads(&scene, ZT_OWNER_SPHERE, "radius", 6, 2.5);
+        assert_reads(&scene, ZT_OWNER_SPHERE, "center", OTHER_SPHERE, 0);
+        assert_reads(&scene, ZT_OWNER_SPHERE, "radius", OTHER_SPHERE, 2.5);
         assert_reads(&scene, ZT_OWNER_CAMERA, "fov", 0, 1.25);
         assert_reads(&scene, ZT_OWNER_POINT, "intensity", 1, 1);
         assert_reads(&scene, ZT_OWNER_POINT, "intensity", 3, 15);
@@ -226,6 +226,25 @@ static void out_of_range(void **state) {
     }
 }
 
+/* A torus's tube is at most as wide as the hole, at each moment, whichever of the two moves. */
+static void torus_tube(void **state) {
+    (void)state;
+    zt_animation *animation = create();
+    const int torus = first_of(ZT_OWNER_TORUS);
+    zt_arena frame = {0};
+    zt_scene scene;
+    add_track(animation, ZT_OWNER_TORUS, "tube_radius", torus, 1, 5);
+    add_track(animation, ZT_OWNER_TORUS, "radius", torus, 4, 0);
+    for (double t = 1; t <= 3; t += 0.25) {
+        assert_int_equal(zt_animation_freeze(&scene, animation, t, &frame, deaf), ZT_OK);
+        double tube = 1 + 2 * (t - 1), radius = 4 - 2 * (t - 1);
+        assert_true(scene.objects[torus].torus.tube_radius == fmin(tube, radius));
+        assert_true(scene.objects[torus].torus.radius == radius);
+    }
+    zt_animation_free(&animation);
+    zt_arena_free(&frame);
+}
+
 /* A scene of nothing at all freezes. */
 static void nothing(void **state) {
     (void)state;
@@ -252,6 +271,9 @@ static void summary(void **state) {
     assert_int_equal(contents.sphere_count, 2);
     assert_int_equal(contents.triangle_count, 2);
     assert_int_equal(contents.group_count, 2);
+    assert_int_equal(contents.disk_count + contents.box_count, 2 + 2);
+    assert_int_equal(contents.cylinder_count + contents.cone_count, 2 + 2);
+    assert_int_equal(contents.torus_count + contents.capsule_count, 2 + 2);
     assert_int_equal(contents.mesh_count, 3);
     assert_int_equal(contents.mesh_triangle_count, 70000 + 12 + 12);
     assert_int_equal(contents.ambient_light_count, 2);
@@ -275,6 +297,7 @@ int main(void) {
         cmocka_unit_test(one_property_moves),
         cmocka_unit_test(many_properties_move),
         cmocka_unit_test(out_of_range),
+        cmocka_unit_test(torus_tube),
         cmocka_unit_test(nothing),
         cmocka_unit_test(summary),
     };

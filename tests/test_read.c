@@ -32,7 +32,7 @@ static const sample samples[][2] = {
     [ZT_VALUE_NUMBER] = {{"0.25", {0.25}}, {"1e0", {1}}},
     [ZT_VALUE_ANGLE] = {{"60 deg", {3.14159265358979323846 / 3}}, {"0.5rad", {0.5}}},
     [ZT_VALUE_VECTOR] = {{"[1, -2, 3.5]", {1, -2, 3.5}}, {"[0, .5, -1e3]", {0, 0.5, -1000}}},
-    [ZT_VALUE_SCALE] = {{"2", {2, 2, 2}}, {"[1, -1, 0]", {1, -1, 0}}},
+    [ZT_VALUE_SCALE] = {{"2", {2, 2, 2}}, {"[1, 0.5, 0]", {1, 0.5, 0}}},
     [ZT_VALUE_COLOR] = {{"[0.25, 2, 0]", {0.25, 2, 0}}, {"0.5", {0.5, 0.5, 0.5}}},
     [ZT_VALUE_ROTATION] = {{"[0, 180, 0]", {0, 0, 1, 0}},
                            {"{ axis: [0, 0, 5], angle: 60 }", {0.8660254037844386, 0, 0, 0.5}}},
@@ -50,25 +50,30 @@ static void write_owner(char *text, size_t size, const zt_property *property,
         "camera: {}\nmaterials:\n  spare: {}\n  thing: { %s }\n",
         "camera: {}\nlights:\n  - ambient: {}\n  - ambient: { name: thing, %s }\n",
         "camera: {}\nlights:\n  - ambient: {}\n  - point: { name: thing, %s }\n",
-        "camera: {}\nobjects:\n  - group: { objects: [] }\n  - plane: { name: thing, %s }\n",
-        "camera: {}\nobjects:\n  - group: { objects: [] }\n  - sphere: { name: thing, %s }\n",
-        "camera: {}\nobjects:\n  - group: { objects: [] }\n  - triangle: { name: thing, %s }\n",
-        "camera: {}\nobjects:\n  - group: { objects: [] }\n"
-        "  - mesh: { file: one.ply, name: thing, %s }\n",
-        "camera: {}\nobjects:\n  - group: { objects: [] }\n"
-        "  - group: { objects: [], name: thing, %s }\n"};
+        [ZT_OWNER_MESH] = "camera: {}\nobjects:\n  - group: { objects: [] }\n"
+                          "  - mesh: { file: one.ply, name: thing, %s }\n",
+        [ZT_OWNER_GROUP] = "camera: {}\nobjects:\n  - group: { objects: [] }\n"
+                           "  - group: { objects: [], name: thing, %s }\n"};
     char properties[1024];
     snprintf(properties, sizeof properties, "%s: %s", property->name, value);
     for (int i = 0; i < zt_property_count; i++) {
         const zt_property *other = &zt_properties[i];
-        if (other->owner != property->owner || !other->required || other == property) continue;
+        if (other->owner != property->owner || !(other->flags & ZT_PROPERTY_REQUIRED) ||
+            other == property)
+            continue;
         size_t used = strlen(properties);
         snprintf(properties + used, sizeof properties - used, ", %s: %s", other->name,
                  samples[other->kind][0].text);
     }
     int length = snprintf(text, size, "zoetrope: 1\nfilm: { duration: 2 s, rate: 24 }\n");
     char place[256];
-    snprintf(place, sizeof place, "%s", places[property->owner]);
+    if (places[property->owner])
+        snprintf(place, sizeof place, "%s", places[property->owner]);
+    else
+        snprintf(
+            place, sizeof place,
+            "camera: {}\nobjects:\n  - group: { objects: [] }\n  - %s: { name: thing, %%s }\n",
+            zt_owner_name(property->owner));
     char *hole = strstr(place, "%s");
     *hole = '\0';
     snprintf(text + length, size - (size_t)length, "%s%s%s", place, properties, hole + 2);

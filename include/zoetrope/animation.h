@@ -28,7 +28,8 @@ typedef struct zt_film {
 
 /* How much there is, for a summary. */
 typedef struct zt_contents {
-    int plane_count, sphere_count, triangle_count, mesh_count, group_count;
+    int plane_count, sphere_count, triangle_count, disk_count, box_count, cylinder_count,
+        cone_count, torus_count, capsule_count, mesh_count, group_count;
     int64_t mesh_triangle_count; /* over all mesh objects, each use counted */
     int ambient_light_count, point_light_count;
     int material_count;

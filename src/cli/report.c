@@ -110,6 +110,12 @@ static void print_things(const zt_contents *c) {
     list(&objects, c->plane_count, "plane", "planes");
     list(&objects, c->sphere_count, "sphere", "spheres");
     list(&objects, c->triangle_count, "triangle", "triangles");
+    list(&objects, c->disk_count, "disk", "disks");
+    list(&objects, c->box_count, "box", "boxes");
+    list(&objects, c->cylinder_count, "cylinder", "cylinders");
+    list(&objects, c->cone_count, "cone", "cones");
+    list(&objects, c->torus_count, "torus", "tori");
+    list(&objects, c->capsule_count, "capsule", "capsules");
     list(&objects, c->mesh_count, "mesh", "meshes");
     list(&objects, c->group_count, "group", "groups");
     puts(*objects ? "" : "none");

@@ -209,7 +209,7 @@ static zt_status read_orient(zt_reading *reading, const zt_fields *fields, const
         return ZT_OK;
     }
     rotation.track.property = zt_property_find(owner, "rotation");
-    if (!rotation.track.property || p->track.property != zt_property_find(owner, "position")) {
+    if (!rotation.track.property || p->track.property != zt_place_property(owner)) {
         zt_mistake(mistakes, &orient->place,
                    "there is no rotation that goes with \"%s\" of a %s",
                    p->track.property->name, zt_owner_name(owner));

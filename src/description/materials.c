@@ -8,10 +8,31 @@
 
 enum { NEAREST_TRIED_MAX = 1000 };
 
+/* A pattern, and what is said of one that is not there. */
+static void read_pattern(zt_reading *reading, const zt_fields *fields, zt_material *material) {
+    static const char *const patterns[] = {[ZT_PATTERN_NONE] = "none",
+                                           [ZT_PATTERN_CHECKER] = "checker",
+                                           [ZT_PATTERN_STRIPES] = "stripes"};
+    static const char *const keys[] = {"pattern_direction", "other_color", "pattern_size"};
+    zt_mistakes *mistakes = &reading->mistakes;
+    const zt_node *node = zt_field(fields, "pattern");
+    int pattern = ZT_PATTERN_NONE;
+    if (node && !zt_read_choice(&pattern, mistakes, node, "pattern", patterns, 3)) return;
+    material->pattern = (zt_pattern)pattern;
+    if (pattern == ZT_PATTERN_STRIPES) return;
+    for (int i = 0; i < (pattern == ZT_PATTERN_NONE ? 3 : 1); i++) {
+        const zt_node *idle = zt_field(fields, keys[i]);
+        if (idle)
+            zt_doubt(mistakes, &idle->place, "\"%s\" does nothing without \"pattern: %s\"",
+                     keys[i], i == 0 ? "stripes" : "checker");
+    }
+}
+
 static zt_status read_material(int32_t *index, zt_reading *reading, const zt_node *node,
                                const char *name) {
     const char *names[ZT_FIELD_NAMES_MAX];
     int name_count = zt_motion_names(names, ZT_OWNER_MATERIAL);
+    names[name_count++] = "pattern";
     zt_fields fields;
     *index = -1;
     ZT_TRY(zt_override_in(&node, reading, name, names, name_count));
@@ -19,7 +40,9 @@ static zt_status read_material(int32_t *index, zt_reading *reading, const zt_nod
                         name_count))
         return ZT_OK;
     *index = reading->animation->rest.material_count++;
-    return zt_motion_read(reading, &fields, ZT_OWNER_MATERIAL, *index, name, &node->place);
+    ZT_TRY(zt_motion_read(reading, &fields, ZT_OWNER_MATERIAL, *index, name, &node->place));
+    read_pattern(reading, &fields, &reading->animation->rest.materials[*index]);
+    return ZT_OK;
 }
 
 static int by_name(const void *pa, const void *pb) {

@@ -75,9 +75,10 @@ zt_status zt_motion_read(zt_reading *reading, const zt_fields *fields, zt_owner 
     for (int i = 0; i < zt_property_count; i++) {
         const zt_property *property = &zt_properties[i];
         if (property->owner != owner) continue;
-        const zt_node *node = property->required ? zt_field_required(fields, &reading->mistakes,
-                                                                     property->name, place)
-                                                 : zt_field(fields, property->name);
+        bool required = (property->flags & ZT_PROPERTY_REQUIRED) != 0;
+        const zt_node *node =
+            required ? zt_field_required(fields, &reading->mistakes, property->name, place)
+                     : zt_field(fields, property->name);
         if (node) ZT_TRY(read_property(reading, node, property, index, name));
     }
     return ZT_OK;

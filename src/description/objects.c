@@ -5,22 +5,13 @@
 #include <string.h>
 
 #include "description/materials.h"
+#include "description/models.h"
 #include "description/motion.h"
-#include "description/ply.h"
-
-/* A model, read once however many objects show it. */
-typedef struct model {
-    const char *file; /* as it is written */
-    zt_mesh mesh;
-    struct model *next;
-} model;
 
 typedef struct things {
     zt_reading *reading;
-    const char *directory;
     zt_materials materials;
-    model *first_model, *last_model;
-    int refused_count;     /* of models */
+    zt_models models;
     const zt_node **names; /* of lights and objects, as they come */
     int64_t name_count;
     int counts[ZT_OWNER_COUNT]; /* how many there were of each */
@@ -138,46 +129,6 @@ static zt_status read_light(things *t, const zt_node *node) {
 /* ---- objects --------------------------------------------------------------------------------
  */
 
-static zt_status read_model(int32_t *mesh, things *t, const zt_node *node) {
-    zt_reading *reading = t->reading;
-    const char *file = zt_read_text(&reading->mistakes, node, "file");
-    if (!file) return ZT_OK;
-    if (!zt_text_ends_with(file, ".ply", true)) {
-        zt_mistake(&reading->mistakes, &node->place,
-                   "\"%s\" is not supported; models are read from .ply files",
-                   zt_show(file).text);
-        return ZT_OK;
-    }
-    *mesh = 0;
-    for (const model *m = t->first_model; m; m = m->next, (*mesh)++)
-        if (zt_text_equal(m->file, file)) return ZT_OK;
-    if (zt_mistakes_full(&reading->mistakes) || t->refused_count == ZT_MISTAKES_TOLD_MAX)
-        return ZT_OK;
-    model *fresh = ZT_PUSH(reading->temporary, model, 1);
-    const char *directory = *file == '/' ? "" : t->directory;
-    size_t directory_length = strlen(directory), file_length = strlen(file);
-    char *path = ZT_PUSH(reading->temporary, char, directory_length + file_length + 1);
-    if (!fresh || !path) return ZT_EMEMORY;
-    memcpy(path, directory, directory_length);
-    memcpy(path + directory_length, file, file_length);
-    fresh->file = file;
-    if (t->last_model)
-        t->last_model->next = fresh;
-    else
-        t->first_model = fresh;
-    t->last_model = fresh;
-    reading->animation->rest.mesh_count++;
-    zt_status status = zt_ply_read(&fresh->mesh, &reading->animation->arena, path, &node->place,
-                                   reading->mistakes.listener);
-    if (status == ZT_EMEMORY) return status;
-    if (status == ZT_OK) return ZT_OK;
-    reading->mistakes.count++; /* told by the reader of the model */
-    if (++t->refused_count == ZT_MISTAKES_TOLD_MAX)
-        zt_mistake(&reading->mistakes, &node->place,
-                   "%d models cannot be read; no further ones are tried", t->refused_count);
-    return ZT_OK;
-}
-
 static zt_status read_objects(things *t, const zt_node *list, int32_t parent);
 
 static zt_status read_object(things *t, const zt_node *node, int32_t parent) {
@@ -204,7 +155,7 @@ static zt_status read_object(things *t, const zt_node *node, int32_t parent) {
     }
     if (mesh) {
         const zt_node *file = zt_field_required(&it.fields, mistakes, "file", place);
-        if (file) ZT_TRY(read_model(&object->mesh, t, file));
+        if (file) ZT_TRY(zt_models_note(&t->models, index, &it.fields, file));
     }
     return zt_materials_find(&object->material, &t->materials,
                              zt_field(&it.fields, "material"));
@@ -253,18 +204,9 @@ static void check_names(things *t) {
     }
 }
 
-static zt_status keep_meshes(const things *t) {
-    zt_animation *animation = t->reading->animation;
-    zt_mesh *meshes = ZT_PUSH(&animation->arena, zt_mesh, (size_t)animation->rest.mesh_count);
-    if (!meshes) return ZT_EMEMORY;
-    animation->rest.meshes = meshes;
-    for (const model *m = t->first_model; m; m = m->next) *meshes++ = m->mesh;
-    return ZT_OK;
-}
-
 zt_status zt_objects_read(zt_reading *reading, const char *directory, const zt_node *materials,
                           const zt_node *lights, const zt_node *objects) {
-    things t = {.reading = reading, .directory = directory};
+    things t = {.reading = reading, .models = {.reading = reading, .directory = directory}};
     zt_scene *rest = &reading->animation->rest;
     int32_t light_count = item_count(&reading->mistakes, lights, "lights");
     int64_t object_count = count_objects(objects);
@@ -277,5 +219,5 @@ zt_status zt_objects_read(zt_reading *reading, const char *directory, const zt_n
     for (int32_t i = 0; i < light_count; i++) ZT_TRY(read_light(&t, lights->items[i]));
     ZT_TRY(read_objects(&t, objects, -1));
     check_names(&t);
-    return keep_meshes(&t);
+    return zt_models_read(&t.models);
 }

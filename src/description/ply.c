@@ -7,16 +7,20 @@
 #include <fcntl.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/text.h"
+#include "description/normals.h"
 #include "description/ply_header.h"
 #include "description/triangulate.h"
+#include "image/develop.h"
 
 /* Further out, the square of a length would not fit a float. */
 static const double coordinate_max = 1e18;
+static const double color_max = 1e30;
 
 typedef struct reader {
     const zt_ply_source *source;
@@ -28,7 +32,12 @@ typedef struct reader {
     int64_t most_triangles; /* what the survey found: as many triangles or fewer, */
     int32_t most_corners;   /* and the corners of the largest polygon */
     double *positions;      /* of the vertices, x y z each, as the file has them */
-    uint32_t *corners;      /* of the polygon being read */
+    float *normals;         /* what becomes of those, zero where they are none; or NULL */
+    float *colors;          /* likewise */
+    double vertex[ZT_PLY_VERTEX_ROLES]; /* what was read of the row so far, by role, */
+    int vertex_taken, vertex_parts;     /* how much that is, and will be */
+    bool lacks_normals;                 /* some were none */
+    uint32_t *corners;                  /* of the polygon being read */
     uint32_t *triangles;
     int64_t triangle_count; /* written so far */
     zt_triangulator triangulator;
@@ -178,17 +187,96 @@ static zt_status survey(reader *r) {
     return ZT_OK;
 }
 
-static zt_status take_coordinate(reader *r, const zt_ply_property *property, int32_t count) {
-    (void)count; /* coordinates are no lists */
-    double value = 0;
-    ZT_TRY(read_number(r, property->type, &value));
-    if (!(fabs(value) <= coordinate_max))
-        return REFUSE_ROW(r, "%c is %g, but must lie between -%g and %g", "xyz"[property->role],
-                          value, coordinate_max, coordinate_max);
-    if (property->type == ZT_PLY_FLOAT) value = (double)(float)value; /* text may say more */
-    r->positions[3 * (int64_t)r->row + property->role] = value;
+/* ---- vertices -------------------------------------------------------------------------------
+ */
+
+/* The number of a part of a normal: NaN, however text spells it, where it is not finite. */
+static zt_status read_normal_part(reader *r, zt_ply_type type, double *value) {
+    if (!is_ascii(r)) return read_number(r, type, value);
+    const char *at = r->at;
+    *value = next_word(r) ? strtod(r->last, NULL) : 0;
+    if (!isfinite(*value)) return ZT_OK;
+    r->at = at;
+    return ascii_number(r, value);
+}
+
+/* Integers are a display's color, the largest of their type being white; others are light. */
+static zt_status read_color_part(reader *r, const zt_ply_property *property, double *value) {
+    static const char *const names[] = {"red", "green", "blue"};
+    ZT_TRY(read_number(r, property->type, value));
+    if (!(fabs(*value) <= color_max))
+        return REFUSE_ROW(r, "%s is %g, but must be at most %g",
+                          names[property->role - ZT_PLY_RED], *value, color_max);
+    double most = property->type == ZT_PLY_UINT8    ? UINT8_MAX
+                  : property->type == ZT_PLY_UINT16 ? UINT16_MAX
+                                                    : 0;
+    *value = fmax(*value, 0);
+    if (most > 0) *value = zt_srgb_to_linear(fmin(*value / most, 1));
     return ZT_OK;
 }
+
+static zt_status read_coordinate(reader *r, const zt_ply_property *property, double *value) {
+    ZT_TRY(read_number(r, property->type, value));
+    if (!(fabs(*value) <= coordinate_max))
+        return REFUSE_ROW(r, "%c is %g, but must lie between -%g and %g", "xyz"[property->role],
+                          *value, coordinate_max, coordinate_max);
+    if (property->type == ZT_PLY_FLOAT) *value = (double)(float)*value; /* text may say more */
+    return ZT_OK;
+}
+
+/* All of a row's numbers are there. */
+static void finish_vertex(reader *r) {
+    const double *v = r->vertex;
+    int64_t at = 3 * (int64_t)r->row;
+    r->vertex_taken = 0;
+    memcpy(r->positions + at, v, 3 * sizeof *v);
+    if (r->normals) {
+        vec3 n = vec3_normalize((vec3){v[ZT_PLY_NX], v[ZT_PLY_NY], v[ZT_PLY_NZ]});
+        bool good = isfinite(n.x) && isfinite(n.y) && isfinite(n.z) && vec3_max_abs(n) > 0;
+        r->lacks_normals |= !good;
+        if (good)
+            memcpy(r->normals + at, (float[3]){(float)n.x, (float)n.y, (float)n.z},
+                   3 * sizeof *r->normals);
+    }
+    for (int c = 0; c < 3 && r->colors; c++) r->colors[at + c] = (float)v[ZT_PLY_RED + c];
+}
+
+static zt_status take_vertex_part(reader *r, const zt_ply_property *property, int32_t count) {
+    (void)count; /* these are no lists */
+    double *value = &r->vertex[property->role];
+    if (property->role <= ZT_PLY_Z)
+        ZT_TRY(read_coordinate(r, property, value));
+    else if (property->role <= ZT_PLY_NZ)
+        ZT_TRY(read_normal_part(r, property->type, value));
+    else
+        ZT_TRY(read_color_part(r, property, value));
+    if (++r->vertex_taken == r->vertex_parts) finish_vertex(r);
+    return ZT_OK;
+}
+
+/* Room for what is wanted of the vertices and there; the rest is skipped. */
+static zt_status make_room(reader *r, zt_arena *arena, zt_arena *scratch, unsigned parts) {
+    zt_ply_element *vertex = r->header.vertex;
+    size_t count = 3 * (size_t)vertex->count;
+    const unsigned normals = 7u << ZT_PLY_NX, colors = 7u << ZT_PLY_RED;
+    unsigned wanted = 7u << ZT_PLY_X;
+    if (parts & ZT_PLY_NORMALS && (vertex->roles & normals) == normals) wanted |= normals;
+    if (parts & ZT_PLY_COLORS && (vertex->roles & colors) == colors) wanted |= colors;
+    for (zt_ply_property *p = vertex->properties; p; p = p->next)
+        if (wanted & 1u << p->role)
+            r->vertex_parts++;
+        else
+            p->role = ZT_PLY_SKIPPED;
+    r->positions = ZT_PUSH(scratch, double, count);
+    if (wanted & normals) r->normals = ZT_PUSH(arena, float, count);
+    if (wanted & colors) r->colors = ZT_PUSH(arena, float, count);
+    bool made =
+        r->positions && !r->normals == !(wanted & normals) && !r->colors == !(wanted & colors);
+    return made ? ZT_OK : ZT_EMEMORY;
+}
+
+/* ---- polygons -------------------------------------------------------------------------------
+ */
 
 /* A vertex's index; where `restart` is given, true there instead for -1. */
 static zt_status read_corner(reader *r, zt_ply_type type, uint32_t *corner, bool *restart) {
@@ -293,21 +381,22 @@ static zt_status write_mesh(const reader *r, zt_mesh *mesh, zt_arena *arena) {
     *mesh = (zt_mesh){.origin = {origin[0], origin[1], origin[2]},
                       .positions = positions,
                       .triangles = r->triangles,
+                      .normals = r->normals,
+                      .colors = r->colors,
                       .vertex_count = vertex_count,
                       .triangle_count = (int32_t)r->triangle_count,
                       .low = {low[0], low[1], low[2]},
                       .high = {high[0], high[1], high[2]}};
-    return ZT_OK;
+    return r->lacks_normals ? zt_normals_complete(r->normals, mesh) : ZT_OK;
 }
 
 static zt_status read_mesh(zt_mesh *mesh, zt_arena *arena, zt_arena *scratch,
-                           zt_ply_source *source) {
+                           zt_ply_source *source, unsigned parts) {
     reader r = {.source = source};
     ZT_TRY(zt_ply_header_read(&r.header, scratch, source));
     ZT_TRY(survey(&r));
-    r.positions = ZT_PUSH(scratch, double, 3 * (size_t)r.header.vertex->count);
-    if (!r.positions) return ZT_EMEMORY;
-    ZT_TRY(read_rows(&r, r.header.vertex, take_coordinate));
+    ZT_TRY(make_room(&r, arena, scratch, parts));
+    ZT_TRY(read_rows(&r, r.header.vertex, take_vertex_part));
     ZT_TRY(read_triangles(&r, arena, scratch));
     return write_mesh(&r, mesh, arena);
 }
@@ -335,8 +424,8 @@ static zt_status read_file(zt_ply_source *source, zt_arena *scratch, int file) {
     return ZT_OK;
 }
 
-zt_status zt_ply_read(zt_mesh *mesh, zt_arena *arena, const char *path, const zt_place *place,
-                      zt_listener listener) {
+zt_status zt_ply_read(zt_mesh *mesh, zt_arena *arena, const char *path, unsigned parts,
+                      const zt_place *place, zt_listener listener) {
     *mesh = (zt_mesh){0};
     zt_arena scratch = {0};
     zt_ply_source source = {.path = path, .listener = listener};
@@ -346,7 +435,7 @@ zt_status zt_ply_read(zt_mesh *mesh, zt_arena *arena, const char *path, const zt
     if (status == ZT_EFILE)
         zt_tell_at(listener, ZT_ERROR, place, "cannot read %s: %s", path, strerror(errno));
     if (file >= 0) close(file);
-    if (status == ZT_OK) status = read_mesh(mesh, arena, &scratch, &source);
+    if (status == ZT_OK) status = read_mesh(mesh, arena, &scratch, &source, parts);
     if (status == ZT_EMEMORY)
         zt_tell_at(listener, ZT_ERROR, place, "not enough memory to read %s", path);
     if (status == ZT_EDESCRIPTION && place)

@@ -166,11 +166,19 @@ static zt_status read_type(const parser *p, zt_ply_type *type, word w) {
                          nearest.best ? nearest.best : "", nearest.best ? "\"?" : "");
 }
 
+/* What a color in other types means, nobody knows. */
+static bool is_color_type(zt_ply_type type) {
+    return type == ZT_PLY_UINT8 || type == ZT_PLY_UINT16 || type >= ZT_PLY_FLOAT;
+}
+
 static zt_ply_role role_of(const parser *p, const zt_ply_property *property, word name) {
+    static const char *const names[ZT_PLY_VERTEX_ROLES] = {"x",  "y",   "z",     "nx",  "ny",
+                                                           "nz", "red", "green", "blue"};
     if (p->element == p->header->vertex && !property->is_list)
-        for (int axis = ZT_PLY_X; axis <= ZT_PLY_Z; axis++)
-            if (is_word(name, (const char *const[]){"x", "y", "z"}[axis]))
-                return (zt_ply_role)axis;
+        for (int role = 0; role < ZT_PLY_VERTEX_ROLES; role++)
+            if (is_word(name, names[role]) &&
+                (role < ZT_PLY_RED || is_color_type(property->type)))
+                return (zt_ply_role)role;
     if ((p->element == p->header->face || p->element == p->header->strips) &&
         property->is_list && property->type < ZT_PLY_FLOAT &&
         (is_word(name, "vertex_indices") || is_word(name, "vertex_index")))

@@ -48,9 +48,17 @@ typedef enum zt_ply_role {
     ZT_PLY_X,
     ZT_PLY_Y,
     ZT_PLY_Z,
+    ZT_PLY_NX, /* of a normal */
+    ZT_PLY_NY,
+    ZT_PLY_NZ,
+    ZT_PLY_RED,
+    ZT_PLY_GREEN,
+    ZT_PLY_BLUE,
     ZT_PLY_CORNERS,
     ZT_PLY_SKIPPED
 } zt_ply_role;
+
+enum { ZT_PLY_VERTEX_ROLES = ZT_PLY_BLUE + 1 }; /* the first of the roles are a vertex's */
 
 typedef struct zt_ply_property {
     struct zt_ply_property *next;

@@ -60,6 +60,15 @@ static bool read_made_of_numbers(double *value, zt_mistakes *mistakes, const zt_
     return false;
 }
 
+/* Whether a vector may be what a property says. */
+static bool is_allowed(const double value[3], zt_mistakes *mistakes, const zt_node *node,
+                       const zt_property *property) {
+    bool direction = (property->flags & ZT_PROPERTY_DIRECTION) != 0;
+    if (!direction || value[0] != 0 || value[1] != 0 || value[2] != 0) return true;
+    zt_mistake(mistakes, &node->place, "\"%s\" must not be zero", property->name);
+    return false;
+}
+
 bool zt_read_value(double *value, zt_mistakes *mistakes, const zt_node *node,
                    const zt_property *property) {
     const char *what = property->name;
@@ -75,7 +84,8 @@ bool zt_read_value(double *value, zt_mistakes *mistakes, const zt_node *node,
         memcpy(value, &rotation.rotation, sizeof rotation.rotation);
         return true;
     default:
-        return read_made_of_numbers(value, mistakes, node, what, property->kind, range);
+        return read_made_of_numbers(value, mistakes, node, what, property->kind, range) &&
+               is_allowed(value, mistakes, node, property);
     }
 }
 

@@ -23,6 +23,15 @@ static void keep_in_range(double *value, const zt_property *property) {
         value[c] = fmin(fmax(value[c], min), max);
 }
 
+/* The tube of a torus is no wider than its hole. */
+static void keep_tori(zt_scene *scene) {
+    for (int32_t i = 0; i < scene->object_count; i++) {
+        zt_object *object = &scene->objects[i];
+        if (object->shape == ZT_SHAPE_TORUS)
+            object->torus.tube_radius = fmin(object->torus.tube_radius, object->torus.radius);
+    }
+}
+
 static zt_status eval_formula(double *value, const zt_track *track, const zt_scene *scene,
                               const zt_animation *animation, double time_s,
                               zt_listener listener) {
@@ -94,6 +103,7 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
         keep_in_range(value, track->property);
         zt_property_set(track->property, scene, track->index, value);
     }
+    keep_tori(scene);
     return result;
 }
 
@@ -122,6 +132,24 @@ zt_contents zt_animation_contents(const zt_animation *animation) {
         case ZT_SHAPE_TRIANGLE:
             contents.triangle_count++;
             break;
+        case ZT_SHAPE_DISK:
+            contents.disk_count++;
+            break;
+        case ZT_SHAPE_BOX:
+            contents.box_count++;
+            break;
+        case ZT_SHAPE_CYLINDER:
+            contents.cylinder_count++;
+            break;
+        case ZT_SHAPE_CONE:
+            contents.cone_count++;
+            break;
+        case ZT_SHAPE_TORUS:
+            contents.torus_count++;
+            break;
+        case ZT_SHAPE_CAPSULE:
+            contents.capsule_count++;
+            break;
         case ZT_SHAPE_GROUP:
             contents.group_count++;
             break;
@@ -130,7 +158,7 @@ zt_contents zt_animation_contents(const zt_animation *animation) {
             contents.mesh_triangle_count +=
                 scene->meshes[scene->objects[i].mesh].triangle_count;
             break;
-        default:
+        case ZT_SHAPE_COUNT:
             break;
         }
     for (int32_t i = 0; i < scene->light_count; i++)

@@ -64,10 +64,10 @@ struct zt_animation {
 };
 
 /* The scene of the moment `time_s`, in the arena: a copy of the scene at rest with each track's
- * value written into it, brought into its property's range. Meshes are shared with the
- * animation. The same bits for the same time, from any number of threads at once.
- * ZT_EDESCRIPTION: formulas have no value at this time, which is told with their places;
- * ZT_EMEMORY. */
+ * value written into it, brought into its property's range; the tube of a torus is made no
+ * wider than its radius. Meshes are shared with the animation. The same bits for the same time,
+ * from any number of threads at once. ZT_EDESCRIPTION: formulas have no value at this time,
+ * which is told with their places; ZT_EMEMORY. */
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
                               zt_arena *arena, zt_listener listener);
 

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/text.h"
 #include "keyframe/rotation.h"
 
 static const double tau = 2 * 3.14159265358979323846;
@@ -10,10 +11,18 @@ static const double tau = 2 * 3.14159265358979323846;
  */
 
 const zt_property *zt_place_property(zt_owner owner) {
-    static const char *const names[] = {"position", "center", "vertices"};
+    static const char *const names[] = {"position", "center", "vertices", "from"};
     const zt_property *property = NULL;
-    for (int i = 0; i < 3 && !property; i++) property = zt_property_find(owner, names[i]);
+    for (int i = 0; i < 4 && !property; i++) property = zt_property_find(owner, names[i]);
     return property;
+}
+
+/* Of what reaches from one point to another, the property of the other one; else NULL. */
+static const zt_property *other_end(zt_reference thing) {
+    return thing.property->offset == offsetof(zt_object, tube.from) &&
+                   zt_text_equal(thing.property->name, "from")
+               ? zt_property_find(thing.property->owner, "to")
+               : NULL;
 }
 
 /* The group whose space a thing's numbers are in; -1 for the world. */
@@ -44,10 +53,15 @@ static xform outwards(int32_t group, int32_t end, const zt_scene *scene) {
 }
 
 static vec3 own_place(zt_reference thing, const zt_scene *scene) {
-    double v[ZT_VALUE_WIDTH_MAX];
+    double v[ZT_VALUE_WIDTH_MAX], end[3];
+    const zt_property *other = other_end(thing);
     zt_property_get(v, thing.property, scene, thing.index);
-    if (thing.property->kind != ZT_VALUE_VERTICES) return (vec3){v[0], v[1], v[2]};
     /* Divided first: the sum could be too large. */
+    if (other) {
+        zt_property_get(end, other, scene, thing.index);
+        return (vec3){v[0] / 2 + end[0] / 2, v[1] / 2 + end[1] / 2, v[2] / 2 + end[2] / 2};
+    }
+    if (thing.property->kind != ZT_VALUE_VERTICES) return (vec3){v[0], v[1], v[2]};
     return (vec3){v[0] / 3 + v[3] / 3 + v[6] / 3, v[1] / 3 + v[4] / 3 + v[7] / 3,
                   v[2] / 3 + v[5] / 3 + v[8] / 3};
 }
@@ -84,7 +98,9 @@ static void visit_groups(int32_t group, int32_t end, const zt_scene *rest,
 void zt_anchor_visit(const zt_anchor *anchor, zt_reference driven, const zt_scene *rest,
                      zt_reference_visitor visitor) {
     if (!anchor->thing.property) return;
+    const zt_property *other = other_end(anchor->thing);
     visitor.visit(visitor.user, anchor->thing);
+    if (other) visitor.visit(visitor.user, (zt_reference){other, anchor->thing.index});
     int32_t from = group_of(anchor->thing, rest), to = group_of(driven, rest);
     int32_t common = common_group(from, to, rest);
     visit_groups(from, common, rest, visitor);

@@ -17,8 +17,9 @@ typedef struct zt_reference {
     int32_t index;
 } zt_reference;
 
-/* The property that says where a thing is: its position, its center, or the vertices, of which
- * it is the middle; NULL for owners that are nowhere in particular. */
+/* The property that says where a thing is: its position, its center, the vertices, of which it
+ * is the middle, or where it begins: then it is in the middle between "from" and "to". NULL for
+ * owners that are nowhere in particular. */
 const zt_property *zt_place_property(zt_owner owner);
 
 /* A point: where a thing is, with its groups, or one that stays. */

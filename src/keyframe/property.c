@@ -4,7 +4,9 @@
 
 #include "base/text.h"
 
-#define NONE INFINITY
+#define NONE      INFINITY
+#define REQUIRED  ZT_PROPERTY_REQUIRED
+#define DIRECTION ZT_PROPERTY_DIRECTION
 
 #define CAMERA(field)    offsetof(zt_camera, field)
 #define MATERIAL(field)  offsetof(zt_material, field)
@@ -14,39 +16,71 @@
 
 /* clang-format off */
 const zt_property zt_properties[] = {
-    {ZT_OWNER_CAMERA, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(position), "where the eye is"},
-    {ZT_OWNER_CAMERA, "look_at", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(look_at), "the point in the middle of the picture"},
-    {ZT_OWNER_CAMERA, "up", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, CAMERA(up), "what is up in the picture, with look_at"},
-    {ZT_OWNER_CAMERA, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, CAMERA(rotation), "instead of look_at: turned from looking along -z"},
-    {ZT_OWNER_CAMERA, "roll", ZT_VALUE_ANGLE, "deg", -NONE, NONE, false, CAMERA(roll), "turns it around its view; the picture turns clockwise"},
-    {ZT_OWNER_CAMERA, "fov", ZT_VALUE_ANGLE, "deg", 1e-6, 179.9, false, CAMERA(fov), "the angle that the picture's height spans"},
+    {ZT_OWNER_CAMERA, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, CAMERA(position), "where the eye is"},
+    {ZT_OWNER_CAMERA, "look_at", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, CAMERA(look_at), "the point in the middle of the picture"},
+    {ZT_OWNER_CAMERA, "up", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, CAMERA(up), "what is up in the picture, with look_at"},
+    {ZT_OWNER_CAMERA, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, CAMERA(rotation), "instead of look_at: turned from looking along -z"},
+    {ZT_OWNER_CAMERA, "roll", ZT_VALUE_ANGLE, "deg", -NONE, NONE, 0, CAMERA(roll), "turns it around its view; the picture turns clockwise"},
+    {ZT_OWNER_CAMERA, "fov", ZT_VALUE_ANGLE, "deg", 1e-6, 179.9, 0, CAMERA(fov), "the angle that the picture's height spans"},
 
-    {ZT_OWNER_MATERIAL, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, MATERIAL(color), "the share of light that is thrown back"},
-    {ZT_OWNER_MATERIAL, "reflectivity", ZT_VALUE_NUMBER, NULL, 0, 1, false, MATERIAL(reflectivity), "how much of what the mirror shows is added"},
+    {ZT_OWNER_MATERIAL, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, MATERIAL(color), "the share of light that is thrown back"},
+    {ZT_OWNER_MATERIAL, "reflectivity", ZT_VALUE_NUMBER, NULL, 0, 1, 0, MATERIAL(reflectivity), "how much of what the mirror shows is added"},
 
-    {ZT_OWNER_AMBIENT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, LIGHT(color), "the light's color"},
-    {ZT_OWNER_AMBIENT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, false, LIGHT(intensity), "a factor to the color"},
+    {ZT_OWNER_MATERIAL, "other_color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, MATERIAL(other_color), "of a pattern: the color of every other cell"},
+    {ZT_OWNER_MATERIAL, "pattern_size", ZT_VALUE_NUMBER, NULL, 1e-12, NONE, 0, MATERIAL(pattern_size), "how long a cell of the pattern is"},
+    {ZT_OWNER_MATERIAL, "pattern_direction", ZT_VALUE_VECTOR, NULL, -NONE, NONE, DIRECTION, MATERIAL(pattern_direction), "across the stripes; any length"},
 
-    {ZT_OWNER_POINT, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, LIGHT(position), "where the light is"},
-    {ZT_OWNER_POINT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, false, LIGHT(color), "the light's color"},
-    {ZT_OWNER_POINT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, false, LIGHT(intensity), "a factor to the color, at distance 1"},
-    {ZT_OWNER_POINT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, false, LIGHT(shadows), "whether objects keep its light off"},
+    {ZT_OWNER_AMBIENT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, LIGHT(color), "the light's color"},
+    {ZT_OWNER_AMBIENT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(intensity), "a factor to the color"},
 
-    {ZT_OWNER_PLANE, "normal", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, OBJECT(plane.normal), "what is up from the plane; any length"},
-    {ZT_OWNER_PLANE, "distance", ZT_VALUE_NUMBER, NULL, -NONE, NONE, false, OBJECT(plane.distance), "from the origin to the plane, along the normal"},
+    {ZT_OWNER_POINT, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, LIGHT(position), "where the light is"},
+    {ZT_OWNER_POINT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, LIGHT(color), "the light's color"},
+    {ZT_OWNER_POINT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(intensity), "a factor to the color, at distance 1"},
+    {ZT_OWNER_POINT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, 0, LIGHT(shadows), "whether objects keep its light off"},
 
-    {ZT_OWNER_SPHERE, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, true, OBJECT(sphere.center), "the middle"},
-    {ZT_OWNER_SPHERE, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, true, OBJECT(sphere.radius), "the radius; 0 hides the sphere"},
+    {ZT_OWNER_PLANE, "normal", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED | DIRECTION, OBJECT(plane.normal), "what is up from the plane; any length"},
+    {ZT_OWNER_PLANE, "distance", ZT_VALUE_NUMBER, NULL, -NONE, NONE, 0, OBJECT(plane.distance), "from the origin to the plane, along the normal"},
 
-    {ZT_OWNER_TRIANGLE, "vertices", ZT_VALUE_VERTICES, NULL, -NONE, NONE, true, OBJECT(triangle.vertices), "the three corners"},
+    {ZT_OWNER_SPHERE, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(sphere.center), "the middle"},
+    {ZT_OWNER_SPHERE, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(sphere.radius), "the radius; 0 hides the sphere"},
 
-    {ZT_OWNER_MESH, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, PLACEMENT(position), "where the model's origin is"},
-    {ZT_OWNER_MESH, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, PLACEMENT(rotation), "angles around x, then y, then z"},
-    {ZT_OWNER_MESH, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, false, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the mesh"},
+    {ZT_OWNER_TRIANGLE, "vertices", ZT_VALUE_VERTICES, NULL, -NONE, NONE, REQUIRED, OBJECT(triangle.vertices), "the three corners"},
 
-    {ZT_OWNER_GROUP, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, false, PLACEMENT(position), "where the group's origin is"},
-    {ZT_OWNER_GROUP, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, false, PLACEMENT(rotation), "angles around x, then y, then z"},
-    {ZT_OWNER_GROUP, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, false, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the members"},
+    {ZT_OWNER_DISK, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(disk.center), "the middle"},
+    {ZT_OWNER_DISK, "normal", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED | DIRECTION, OBJECT(disk.normal), "what is up from the disk; any length"},
+    {ZT_OWNER_DISK, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(disk.radius), "the radius; 0 hides the disk"},
+
+    {ZT_OWNER_BOX, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(box.center), "the middle"},
+    {ZT_OWNER_BOX, "size", ZT_VALUE_SCALE, NULL, 0, NONE, REQUIRED, OBJECT(box.size), "how long the box is along x, y and z, or one number for all; 0 hides the box"},
+    {ZT_OWNER_BOX, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, OBJECT(box.rotation), "angles around x, then y, then z, through the middle"},
+
+    {ZT_OWNER_CYLINDER, "from", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.from), "the middle of one end"},
+    {ZT_OWNER_CYLINDER, "to", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.to), "the middle of the other end"},
+    {ZT_OWNER_CYLINDER, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(tube.radius), "the radius; 0 hides the cylinder"},
+
+    {ZT_OWNER_CONE, "from", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.from), "the middle of one end"},
+    {ZT_OWNER_CONE, "to", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.to), "the middle of the other end, or the tip"},
+    {ZT_OWNER_CONE, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(tube.radius), "the radius at the first end"},
+    {ZT_OWNER_CONE, "end_radius", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, OBJECT(tube.end_radius), "the radius at the other end"},
+
+    {ZT_OWNER_TORUS, "center", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(torus.center), "the middle of the hole"},
+    {ZT_OWNER_TORUS, "axis", ZT_VALUE_VECTOR, NULL, -NONE, NONE, DIRECTION, OBJECT(torus.axis), "what goes through the hole; any length"},
+    {ZT_OWNER_TORUS, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(torus.radius), "from the middle to the middle of the tube"},
+    {ZT_OWNER_TORUS, "tube_radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(torus.tube_radius), "the radius of the tube, at most the other one; 0 hides the torus"},
+
+    {ZT_OWNER_CAPSULE, "from", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.from), "the middle of one round end"},
+    {ZT_OWNER_CAPSULE, "to", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, OBJECT(tube.to), "the middle of the other round end"},
+    {ZT_OWNER_CAPSULE, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, OBJECT(tube.radius), "the radius; 0 hides the capsule"},
+
+    {ZT_OWNER_MESH, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, PLACEMENT(position), "where the model's origin is"},
+    {ZT_OWNER_MESH, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, PLACEMENT(rotation), "angles around x, then y, then z"},
+    {ZT_OWNER_MESH, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, 0, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the mesh"},
+    {ZT_OWNER_MESH, "smooth", ZT_VALUE_SWITCH, NULL, 0, 1, 0, OBJECT(smooth), "whether light falls on it as on something round"},
+    {ZT_OWNER_MESH, "vertex_colors", ZT_VALUE_SWITCH, NULL, 0, 1, 0, OBJECT(vertex_colors), "whether the model's own colors tint the material's"},
+
+    {ZT_OWNER_GROUP, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, PLACEMENT(position), "where the group's origin is"},
+    {ZT_OWNER_GROUP, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, PLACEMENT(rotation), "angles around x, then y, then z"},
+    {ZT_OWNER_GROUP, "scale", ZT_VALUE_SCALE, NULL, -NONE, NONE, 0, PLACEMENT(scale), "a factor, or one for each axis; 0 hides the members"},
 };
 /* clang-format on */
 
@@ -126,7 +160,8 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
                                     .fov = 40 * (3.14159265358979323846 / 180)};
         break;
     case ZT_OWNER_MATERIAL:
-        scene->materials[index] = (zt_material){.color = {1, 1, 1}};
+        scene->materials[index] = (zt_material){
+            .color = {1, 1, 1}, .pattern_size = 1, .pattern_direction = {1, 0, 0}};
         break;
     case ZT_OWNER_AMBIENT:
     case ZT_OWNER_POINT:
@@ -143,6 +178,8 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
                               .material = -1,
                               .mesh = -1};
         if (owner == ZT_OWNER_MESH || owner == ZT_OWNER_GROUP) object->placement = still;
+        if (owner == ZT_OWNER_BOX) object->box.rotation = still.rotation;
+        if (owner == ZT_OWNER_TORUS) object->torus.axis = (vec3){0, 1, 0};
     }
     }
 }

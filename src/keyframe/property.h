@@ -42,13 +42,18 @@ typedef enum zt_owner {
     ZT_OWNER_COUNT
 } zt_owner;
 
+typedef enum zt_property_flag {
+    ZT_PROPERTY_REQUIRED = 1, /* the owner makes no sense without it */
+    ZT_PROPERTY_DIRECTION = 2 /* a vector of any length but zero */
+} zt_property_flag;
+
 typedef struct zt_property {
     zt_owner owner;
     const char *name;
     zt_value_kind kind;
     const char *unit; /* as written: "deg"; NULL for none */
     double min, max;  /* of each channel as written (degrees), both allowed; +-INFINITY */
-    bool required;    /* the owner makes no sense without it */
+    unsigned flags;   /* of zt_property_flag */
     size_t offset;    /* bytes within the owner's struct of the scene */
     const char *meaning;
 } zt_property;

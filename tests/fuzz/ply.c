@@ -23,7 +23,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     if (ftruncate(file, 0) != 0 || pwrite(file, bytes, size, 0) != (ssize_t)size) abort();
     zt_arena arena = {0};
     zt_mesh mesh;
-    if (zt_ply_read(&mesh, &arena, path, NULL, (zt_listener){0}) == ZT_OK)
+    if (zt_ply_read(&mesh, &arena, path, ZT_PLY_NORMALS | ZT_PLY_COLORS, NULL,
+                    (zt_listener){0}) == ZT_OK)
         for (int64_t i = 0; i < 3 * (int64_t)mesh.triangle_count; i++)
             if (mesh.triangles[i] >= (uint32_t)mesh.vertex_count) abort();
     zt_arena_free(&arena);
