@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "base/diag.h"
 #include "tracer/embree.h"
 
 struct zt_bvh_builder {
@@ -34,31 +35,14 @@ static zt_status start(zt_bvh_builder *builder) {
     return builder->door->open(&builder->embree, builder->threads, builder->listener);
 }
 
-zt_status zt_bvh_of_triangles(zt_bvh **out, zt_bvh_builder *builder, const float *positions,
-                              int32_t vertex_count, const uint32_t *triangles,
-                              int32_t triangle_count) {
-    *out = NULL;
-    ZT_TRY(start(builder));
-    return builder->door->of_triangles(out, builder->embree, positions, vertex_count, triangles,
-                                       triangle_count);
-}
-
 zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
-                          int32_t box_count) {
+                          int32_t box_count, zt_bvh_life life) {
     ZT_TRY(start(builder));
-    return builder->door->of_boxes(bvh, builder->embree, boxes, box_count);
+    return builder->door->of_boxes(bvh, builder->embree, boxes, box_count, life);
 }
 
 void zt_bvh_free(zt_bvh **bvh) {
     if (*bvh) (*bvh)->door->free(bvh);
-}
-
-void zt_bvh_nearest(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
-    bvh->door->nearest(bvh, rays, kind);
-}
-
-void zt_bvh_any(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
-    bvh->door->any(bvh, rays, kind);
 }
 
 void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,

@@ -1,21 +1,20 @@
-/* Bounding volume hierarchies over triangles and over boxes. The door to Embree, a module that
- * is loaded when the first hierarchy is built.
+/* Bounding volume hierarchies over boxes: which rays may meet what is in which box. The door to
+ * Embree, a module that is loaded when the first hierarchy is built.
  *
- * What a hierarchy finds is where to look: rays are single precision in a space of the caller's
- * choice, and the caller works out distances himself. */
+ * What is in a box, and where a ray meets it, is the caller's: rays are single precision in a
+ * space of his choice and only tell where to look, so that what is met depends on nothing here.
+ * Embree's own triangles are not used: near vertices rays get through between them. */
 #ifndef ZT_TRACER_BVH_H
 #define ZT_TRACER_BVH_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include <zoetrope/status.h>
 
-#include "base/diag.h"
-
-/* Up to 256 rays o + t d, d of any length, that look from t = 0 to `far`; a ray whose far is
- * negative looks nowhere. */
-enum { ZT_BVH_RAYS = 256 };
+/* Up to 256 rays o + t d that look from t = 0 to a little beyond `far`, by 2^-20 of it. The
+ * largest component of d is between 2^-126 and 2^127. One that is not like that, has another
+ * number but far that is not finite, or a far that is not positive, looks nowhere. */
+enum { ZT_BVH_RAYS = 256, ZT_BVH_LANES = 16 };
 typedef struct zt_bvh_rays {
     _Alignas(64) float ox[ZT_BVH_RAYS];
     _Alignas(64) float oy[ZT_BVH_RAYS];
@@ -24,7 +23,6 @@ typedef struct zt_bvh_rays {
     _Alignas(64) float dy[ZT_BVH_RAYS];
     _Alignas(64) float dz[ZT_BVH_RAYS];
     _Alignas(64) float far[ZT_BVH_RAYS];
-    _Alignas(64) int32_t triangle[ZT_BVH_RAYS]; /* what is found, or -1 */
     int count;
 } zt_bvh_rays;
 
@@ -33,40 +31,38 @@ typedef struct zt_bvh_box {
 } zt_bvh_box;
 
 /* The builder: Embree's device. Opening it starts nothing; threads that build, 0 for one a
- * core, are started by the first hierarchy. */
+ * core, are started by the first hierarchy. Hierarchies of one builder are built one at a
+ * time; looking is legal from any number of threads. */
 typedef struct zt_bvh_builder zt_bvh_builder;
 zt_status zt_bvh_open(zt_bvh_builder **builder, int threads, zt_listener listener);
 void zt_bvh_close(zt_bvh_builder **builder); /* after all of its hierarchies */
 
+/* How long a hierarchy is for: many frames, so that it is built well, or one, quickly. */
+typedef enum zt_bvh_life { ZT_BVH_LASTING, ZT_BVH_PASSING } zt_bvh_life;
+
+/* Over boxes, which need not outlive the call. *bvh is NULL or a hierarchy of the same builder
+ * and life, which is then made over anew: what moves is built each frame and should allocate
+ * little. Boxes with low > high, or with a number that is not finite, are left out. Where this
+ * fails, the hierarchy is freed and *bvh NULL. */
 typedef struct zt_bvh zt_bvh;
-
-/* Over the triangles of a mesh: `positions` (vertex_count * 3, and one float more that may be
- * read) and `triangles` (triangle_count * 3 indices) must outlive it. */
-zt_status zt_bvh_of_triangles(zt_bvh **out, zt_bvh_builder *builder, const float *positions,
-                              int32_t vertex_count, const uint32_t *triangles,
-                              int32_t triangle_count);
-
-/* Over boxes, which must outlive it. *bvh is NULL or one of the same builder's over boxes,
- * which is then made over anew: what moves is built each frame and should allocate little. */
 zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
-                          int32_t box_count);
+                          int32_t box_count, zt_bvh_life life);
 void zt_bvh_free(zt_bvh **bvh);
 
-/* How the rays run: close together from about one place, or anyhow. */
+/* How the rays run: close together from about one place, or anyhow. Only speed depends on it.
+ */
 typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
 
-/* The nearest triangle of each ray before `far`: sets `triangle`, and `far` to about its
- * distance. Watertight at edges that triangles share. */
-void zt_bvh_nearest(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind);
-
-/* Whether there is a triangle before `far`: sets `triangle` to one of them or to -1. */
-void zt_bvh_any(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind);
-
-/* Calls `visit` for boxes that rays may meet before their `far`, with the numbers of those
- * rays; never passes by one that a ray meets by more than the roundings of its own arithmetic.
- * The visitor may make `far` of those rays less, negative to be done with a ray. Boxes come in
- * about the order of distance, and any number of times. */
-typedef void zt_bvh_visit(void *user, int32_t box, const int32_t *numbers, int count);
+/* Calls `visit` for boxes that rays may meet before their `far`, with those of the rays
+ * first .. first + 15 whose bits are set in `lanes`: the lowest bit for ray number `first`, a
+ * multiple of 16. The visitor may make `far` of those rays less, negative to be done with a
+ * ray; it may look into another hierarchy. Boxes come in about the order of distance, some of
+ * them though no ray meets them.
+ *
+ * No box is passed by that a ray, its numbers taken as exact, touches before `far`, for origins
+ * within 2^19 times the largest coordinate of all boxes. From further away single precision
+ * cannot aim: move the origin along the ray in double precision first. */
+typedef void zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
 void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);
 

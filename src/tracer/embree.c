@@ -1,4 +1,12 @@
-/* Each hierarchy is an Embree scene of one geometry: triangles, or boxes with a callback. */
+/* Each hierarchy is an Embree scene of one geometry of the caller's own kind: boxes with a
+ * callback.
+ *
+ * Embree sees all of it scaled by powers of two, which changes no digit: space so that the
+ * largest coordinate is about 1, since Embree passes by what is beyond 1e18, and directions so
+ * that their largest component is between 1 and 2, since it takes components below 1e-18 for
+ * that. Its robust traversal allows for its own roundings, so that only this is left to be
+ * allowed for here: such a component leads astray by up to 1e-18 for each unit of t, and a box
+ * that is flat is no wider than that. GROWN is 1e6 times as much. */
 #include "tracer/embree.h"
 
 #include <embree3/rtcore.h>
@@ -10,27 +18,33 @@
 
 #include "base/diag.h"
 
-enum { LANES = 16 };
+enum { LANES = ZT_BVH_LANES };
+
+#define GROWN   0x1p-40f /* by how much boxes are grown, of the largest coordinate */
+#define WIDENED 0x1p-23f /* and of each coordinate */
+#define FURTHER (1 + 0x1p-20f)
 
 struct zt_embree {
     RTCDevice device;
     zt_listener listener;
 };
 
-/* A hierarchy. Over boxes, the geometry and the boxes are kept, to be built anew. */
 typedef struct hierarchy {
     zt_bvh base;
     RTCScene scene;
     RTCGeometry geometry;
-    const zt_bvh_box *boxes;
+    float scale;             /* of Embree's space, a power of two */
+    const zt_bvh_box *boxes; /* while it is built */
 } hierarchy;
 
-/* What a callback of zt_bvh_look needs; the Embree context is what Embree hands on. */
+/* What the callback needs; the Embree context is what Embree hands on. */
 typedef struct look {
     struct RTCIntersectContext context;
     zt_bvh_rays *rays;
     zt_bvh_visit *visit;
     void *user;
+    int first;
+    alignas(64) float stretch[LANES]; /* from a ray's far to Embree's */
 } look;
 
 static void tell_device_error(void *user, enum RTCError code, const char *text) {
@@ -72,170 +86,153 @@ static void embree_free(zt_bvh **slot) {
     *slot = NULL;
 }
 
-/* A hierarchy of a scene and a geometry that have nothing in them yet. */
-static zt_status embree_new(zt_bvh **out, const zt_embree *embree, enum RTCGeometryType type) {
+/* Boxes that are not finite come out so again, and Embree leaves them out. */
+static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
+    const hierarchy *h = arguments->geometryUserPtr;
+    const zt_bvh_box *box = &h->boxes[arguments->primID];
+    float low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i] = box->low[i] * h->scale;
+        high[i] = box->high[i] * h->scale;
+        low[i] -= fabsf(low[i]) * WIDENED + GROWN;
+        high[i] += fabsf(high[i]) * WIDENED + GROWN;
+    }
+    bool empty = false;
+    for (int i = 0; i < 3; i++) empty |= !(box->low[i] <= box->high[i]);
+    *arguments->bounds_o = (struct RTCBounds){.lower_x = empty ? INFINITY : low[0],
+                                              .lower_y = low[1],
+                                              .lower_z = low[2],
+                                              .upper_x = empty ? -INFINITY : high[0],
+                                              .upper_y = high[1],
+                                              .upper_z = high[2]};
+}
+
+static void visit_box(const struct RTCIntersectFunctionNArguments *arguments) {
+    const look *l = (const look *)arguments->context;
+    uint32_t lanes = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        lanes |= (uint32_t)(arguments->valid[lane] & 1) << lane;
+    l->visit(l->user, (int32_t)arguments->primID, l->first, lanes);
+    struct RTCRayHit16 *packet = (struct RTCRayHit16 *)arguments->rayhit;
+    const float *far = l->rays->far + l->first;
+    for (int lane = 0; lane < LANES; lane++)
+        packet->ray.tfar[lane] = far[lane] < 0 ? -INFINITY : far[lane] * l->stretch[lane];
+}
+
+static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_life life) {
     hierarchy *h = calloc(1, sizeof *h);
     *out = (zt_bvh *)h;
     if (!h) return ZT_EMEMORY;
     h->base.door = &zt_door_embree;
     h->scene = rtcNewScene(embree->device);
-    h->geometry = rtcNewGeometry(embree->device, type);
-    if (h->scene && h->geometry) {
-        rtcAttachGeometry(h->scene, h->geometry);
-        return ZT_OK;
+    h->geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+    if (!h->scene || !h->geometry) {
+        embree_free(out);
+        return ZT_EMEMORY;
     }
-    embree_free(out);
-    return ZT_EMEMORY;
+    bool lasting = life == ZT_BVH_LASTING;
+    rtcSetSceneFlags(h->scene, lasting ? RTC_SCENE_FLAG_ROBUST
+                                       : RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(h->scene,
+                            lasting ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
+    rtcSetGeometryUserData(h->geometry, h);
+    rtcSetGeometryBoundsFunction(h->geometry, bounds_of_box, NULL);
+    rtcSetGeometryIntersectFunction(h->geometry, visit_box);
+    rtcAttachGeometry(h->scene, h->geometry);
+    return ZT_OK;
 }
 
-/* The device has told what went wrong, where something did. */
-static zt_status commit(zt_bvh **bvh, const zt_embree *embree) {
-    const hierarchy *h = (hierarchy *)*bvh;
-    rtcCommitGeometry(h->geometry);
-    rtcCommitScene(h->scene);
-    if (rtcGetDeviceError(embree->device) == RTC_ERROR_NONE) return ZT_OK;
-    embree_free(bvh);
-    return ZT_EMEMORY;
-}
-
-static zt_status embree_of_triangles(zt_bvh **out, zt_embree *embree, const float *positions,
-                                     int32_t vertex_count, const uint32_t *triangles,
-                                     int32_t triangle_count) {
-    ZT_TRY(embree_new(out, embree, RTC_GEOMETRY_TYPE_TRIANGLE));
-    const hierarchy *h = (hierarchy *)*out;
-    rtcSetSharedGeometryBuffer(h->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               positions, 0, 3 * sizeof(float), (size_t)vertex_count);
-    rtcSetSharedGeometryBuffer(h->geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               triangles, 0, 3 * sizeof(uint32_t), (size_t)triangle_count);
-    rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_ROBUST);
-    return commit(out, embree);
-}
-
-static void box_bounds(const struct RTCBoundsFunctionArguments *arguments) {
-    const hierarchy *h = arguments->geometryUserPtr;
-    const zt_bvh_box *box = &h->boxes[arguments->primID];
-    *arguments->bounds_o = (struct RTCBounds){.lower_x = box->low[0],
-                                              .lower_y = box->low[1],
-                                              .lower_z = box->low[2],
-                                              .upper_x = box->high[0],
-                                              .upper_y = box->high[1],
-                                              .upper_z = box->high[2]};
-}
-
-/* Where `far` and the number of a ray stand among the members of Embree's ray packets of any
- * width, each of which is an array of one element for each lane. */
-enum { MEMBER_FAR = 8, MEMBER_ID = 10 };
-
-static void box_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
-    const look *l = (const look *)arguments->context;
-    float *far = (float *)arguments->rayhit + MEMBER_FAR * (size_t)arguments->N;
-    const unsigned *id = (unsigned *)arguments->rayhit + MEMBER_ID * (size_t)arguments->N;
-    int32_t numbers[LANES], lanes[LANES];
-    int count = 0;
-    for (unsigned int lane = 0; lane < arguments->N; lane++) {
-        if (!arguments->valid[lane]) continue;
-        lanes[count] = (int32_t)lane;
-        numbers[count++] = (int32_t)id[lane];
-    }
-    if (count == 0) return;
-    l->visit(l->user, (int32_t)arguments->primID, numbers, count);
-    for (int i = 0; i < count; i++) {
-        float now = l->rays->far[numbers[i]];
-        far[lanes[i]] = now < 0 ? -INFINITY : now;
-    }
+/* The power of two that takes the largest coordinate to below 1; numbers that are not finite
+ * are passed over. */
+static float scale_of(const zt_bvh_box *boxes, int32_t count) {
+    float largest = 0;
+    for (int32_t i = 0; i < count; i++)
+        for (int j = 0; j < 3; j++) {
+            float low = fabsf(boxes[i].low[j]), high = fabsf(boxes[i].high[j]);
+            if (low > largest && low < INFINITY) largest = low;
+            if (high > largest && high < INFINITY) largest = high;
+        }
+    int exponent;
+    frexpf(largest, &exponent);
+    return ldexpf(1, -exponent < 126 ? -exponent : 126);
 }
 
 static zt_status embree_of_boxes(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
-                                 int32_t box_count) {
-    if (!*bvh) {
-        ZT_TRY(embree_new(bvh, embree, RTC_GEOMETRY_TYPE_USER));
-        hierarchy *h = (hierarchy *)*bvh;
-        rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
-        rtcSetSceneBuildQuality(h->scene, RTC_BUILD_QUALITY_LOW);
-        rtcSetGeometryUserData(h->geometry, h);
-        rtcSetGeometryBoundsFunction(h->geometry, box_bounds, NULL);
-        rtcSetGeometryIntersectFunction(h->geometry, box_intersect);
-    }
+                                 int32_t box_count, zt_bvh_life life) {
+    if (!*bvh) ZT_TRY(new_hierarchy(bvh, embree, life));
     hierarchy *h = (hierarchy *)*bvh;
     h->boxes = boxes;
+    h->scale = scale_of(boxes, box_count);
     rtcSetGeometryUserPrimitiveCount(h->geometry, (unsigned)box_count);
-    return commit(bvh, embree);
+    rtcCommitGeometry(h->geometry);
+    rtcCommitScene(h->scene);
+    h->boxes = NULL;
+    if (rtcGetDeviceError(embree->device) == RTC_ERROR_NONE) return ZT_OK;
+    embree_free(bvh); /* the device has told what went wrong */
+    return ZT_EMEMORY;
 }
 
-/* Fills a packet with rays from `first` on. Returns how many of them look anywhere. */
-static int load_packet(struct RTCRay16 *packet, int *valid, const zt_bvh_rays *rays,
-                       int first) {
-    memcpy(packet->org_x, rays->ox + first, sizeof packet->org_x);
-    memcpy(packet->org_y, rays->oy + first, sizeof packet->org_y);
-    memcpy(packet->org_z, rays->oz + first, sizeof packet->org_z);
-    memcpy(packet->dir_x, rays->dx + first, sizeof packet->dir_x);
-    memcpy(packet->dir_y, rays->dy + first, sizeof packet->dir_y);
-    memcpy(packet->dir_z, rays->dz + first, sizeof packet->dir_z);
-    memcpy(packet->tfar, rays->far + first, sizeof packet->tfar);
-    int count = 0;
+/* The power of two that is the exponent of an ordinary number, and its inverse. */
+static inline void exponent_of(float *power, float *inverse, float a) {
+    uint32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    bits &= 0x7f800000u;
+    memcpy(power, &bits, sizeof bits);
+    bits = 0x7f000000u - bits;
+    memcpy(inverse, &bits, sizeof bits);
+}
+
+static inline float larger(float a, float b) { return a > b ? a : b; }
+
+/* Fills a packet with rays from `first` on. Returns whether any of them looks anywhere. */
+static bool load_packet(struct RTCRay16 *packet, int *valid, look *l, float scale) {
+    const zt_bvh_rays *rays = l->rays;
+    int any = 0;
     for (int lane = 0; lane < LANES; lane++) {
-        valid[lane] = (first + lane < rays->count) & (packet->tfar[lane] >= 0) ? -1 : 0;
-        count -= valid[lane];
+        int i = l->first + lane;
+        float ox = rays->ox[i], oy = rays->oy[i], oz = rays->oz[i];
+        float dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
+        float length, shrink;
+        exponent_of(&length, &shrink, larger(larger(fabsf(dx), fabsf(dy)), fabsf(dz)));
+        float stretch = length * (scale * FURTHER);
+        float far = rays->far[i] * stretch;
+        packet->org_x[lane] = ox *= scale;
+        packet->org_y[lane] = oy *= scale;
+        packet->org_z[lane] = oz *= scale;
+        packet->dir_x[lane] = dx *= shrink;
+        packet->dir_y[lane] = dy *= shrink;
+        packet->dir_z[lane] = dz *= shrink;
         packet->tnear[lane] = 0;
+        packet->tfar[lane] = far;
         packet->time[lane] = 0;
         packet->mask[lane] = ~0u;
-        packet->id[lane] = (unsigned)(first + lane);
+        packet->id[lane] = 0;
         packet->flags[lane] = 0;
+        l->stretch[lane] = stretch;
+        float zero = (ox + oy + oz + dx + dy + dz) * 0; /* NaN where one is not finite */
+        valid[lane] =
+            -((i < rays->count) & (far > 0) & (zero == 0) & (length > 0) & (shrink > 0));
+        any |= valid[lane];
     }
-    return count;
-}
-
-static void init_context(struct RTCIntersectContext *context, zt_bvh_kind kind) {
-    rtcInitIntersectContext(context);
-    if (kind == ZT_BVH_COHERENT) context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-}
-
-static void embree_nearest(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
-    const hierarchy *h = (const hierarchy *)bvh;
-    struct RTCIntersectContext context;
-    init_context(&context, kind);
-    for (int first = 0; first < rays->count; first += LANES) {
-        alignas(64) int valid[LANES];
-        alignas(64) struct RTCRayHit16 packet;
-        for (int lane = 0; lane < LANES; lane++)
-            packet.hit.geomID[lane] = packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
-        if (load_packet(&packet.ray, valid, rays, first))
-            rtcIntersect16(valid, h->scene, &context, &packet);
-        memcpy(rays->far + first, packet.ray.tfar, sizeof packet.ray.tfar);
-        memcpy(rays->triangle + first, packet.hit.primID, sizeof packet.hit.primID);
-    }
-}
-
-static void embree_any(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind) {
-    const hierarchy *h = (const hierarchy *)bvh;
-    struct RTCIntersectContext context;
-    init_context(&context, kind);
-    for (int first = 0; first < rays->count; first += LANES) {
-        alignas(64) int valid[LANES];
-        alignas(64) struct RTCRay16 packet;
-        if (load_packet(&packet, valid, rays, first))
-            rtcOccluded16(valid, h->scene, &context, &packet);
-        for (int lane = 0; lane < LANES; lane++)
-            rays->triangle[first + lane] = valid[lane] && packet.tfar[lane] < 0 ? 0 : -1;
-    }
+    return any != 0;
 }
 
 static void embree_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind,
                         zt_bvh_visit *visit, void *user) {
     const hierarchy *h = (const hierarchy *)bvh;
     look l = {.rays = rays, .visit = visit, .user = user};
-    init_context(&l.context, kind);
-    for (int first = 0; first < rays->count; first += LANES) {
+    rtcInitIntersectContext(&l.context);
+    if (kind == ZT_BVH_COHERENT) l.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (; l.first < rays->count; l.first += LANES) {
         alignas(64) int valid[LANES];
         alignas(64) struct RTCRayHit16 packet;
         for (int lane = 0; lane < LANES; lane++)
             packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-        if (load_packet(&packet.ray, valid, rays, first))
+        if (load_packet(&packet.ray, valid, &l, h->scale))
             rtcIntersect16(valid, h->scene, &l.context, &packet);
     }
 }
 
 ZT_MODULE_DOOR(zt_embree_door, embree) = {
-    embree_open, embree_close,   embree_of_triangles, embree_of_boxes,
-    embree_free, embree_nearest, embree_any,          embree_look,
+    embree_open, embree_close, embree_of_boxes, embree_free, embree_look,
 };

@@ -13,14 +13,9 @@ typedef struct zt_embree_door {
     zt_status (*open)(zt_embree **embree, int threads, zt_listener listener);
     void (*close)(zt_embree **embree);
     /* All below is as bvh.h has it. */
-    zt_status (*of_triangles)(zt_bvh **out, zt_embree *embree, const float *positions,
-                              int32_t vertex_count, const uint32_t *triangles,
-                              int32_t triangle_count);
     zt_status (*of_boxes)(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
-                          int32_t box_count);
+                          int32_t box_count, zt_bvh_life life);
     void (*free)(zt_bvh **bvh);
-    void (*nearest)(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind);
-    void (*any)(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind);
     void (*look)(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);
 } zt_embree_door;
