@@ -99,7 +99,7 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
         a = before ? s : a;
         b = before ? b : s;
         real next = s - at.h / (2 * at.slope);
-        s = (next > a) & (next < b) ? next : (real)0.5 * (a + b);
+        s = (next >= a) & (next <= b) ? next : (real)0.5 * (a + b);
     }
     bool meets = inside | ((at0 | at2) & (reach2 > 0) & (k > -reach));
     return real_max((k + s) * scale, REAL_LEAST) + (meets ? 0 : REAL_INFINITY);
