@@ -1,0 +1,222 @@
+#include "judge.h"
+
+#include <stdio.h>
+
+static bool finite3(vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+static void worst(double *kept, real error) {
+    double e = (double)error;
+    if (!(e <= *kept) && !isnan(*kept)) *kept = e; /* no number stays */
+}
+
+static void count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
+                  ref_hit expected, const probe *a) {
+    if (++*counter > 3 || !j->verbose) return;
+    printf("  %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
+           "object %d part %d t %.17g, reference object %d part %d t %.17g\n",
+           j->name, what, (double)ray->o.x, (double)ray->o.y, (double)ray->o.z,
+           (double)ray->d.x, (double)ray->d.y, (double)ray->d.z, ray->source_object,
+           ray->source_part, a->object, a->part, a->t, expected.object, expected.part,
+           (double)expected.t);
+}
+
+/* Whether an answer is the surface that the ray leaves, where it leaves it. */
+static bool is_source(const judge *j, const ref_ray *ray, const probe *a) {
+    if (a->object != ray->source_object) return false;
+    const ref_primitive *p = &j->ref->primitives[a->object];
+    if (p->shape == ZT_SHAPE_MESH) return a->part == ray->source_part;
+    ref_hit far;
+    bool sure;
+    if (ref_first(&far, p, ray, 0, (real)INFINITY)) return a->t < far.t / 2;
+    ref_blocked(&sure, j->ref, ray, (real)INFINITY, j->tolerance, a->object);
+    return sure;
+}
+
+/* Whether a primitive is met exactly where the first one is. */
+static bool is_equal(const ref_primitive *p, const ref_ray *ray, ref_hit expected) {
+    ref_hit hit;
+    return expected.object >= 0 && ref_first(&hit, p, ray, 0, (real)INFINITY) &&
+           hit.t == expected.t;
+}
+
+static void judge_distance(const judge *j, const ref_ray *ray, real scale, ref_hit expected,
+                           const ref_face *face, const probe *a) {
+    real slant = real_abs(real3_dot(face->normal, ray->d)) / real3_length(ray->d);
+    real condition = scale / (expected.t * slant), error = real_abs(a->t - expected.t);
+    /* Where the slant itself changes much within the tolerance, there is no first order. */
+    if (condition * expected.t * j->tolerance * face->bend > slant / 4) return;
+    worst(&j->tally->relative, error / expected.t);
+    worst(&j->tally->condition, condition);
+    worst(&j->tally->forward, error / expected.t / condition);
+}
+
+static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *ray, real scale,
+                         const probe *a) {
+    ref_face faces[REF_FACES_MAX];
+    real best = (real)INFINITY;
+    real3 point = real3_of(a->point), normal = real3_of(a->normal);
+    if (j->ref->scene->objects[p->object].smooth) return;
+    int face_count = ref_faces(faces, p, a->part, point);
+    for (int i = 0; i < face_count; i++) {
+        if (faces[i].distance > j->tolerance * scale) continue;
+        real3 n = faces[i].normal;
+        if (real3_dot(n, normal) < 0) n = real3_scale(n, -1);
+        real error = real3_length(real3_sub(normal, n));
+        best = real_min(best, error / (faces[i].twist + faces[i].bend * scale));
+    }
+    (void)ray;
+    worst(&j->tally->normal, best);
+}
+
+static void judge_mirror(const judge *j, const ref_ray *ray, const probe *a) {
+    real3 d = real3_unit(ray->d), n = real3_of(a->normal);
+    real3 mirrored = real3_unit(real3_along(d, -2 * real3_dot(d, n), n));
+    real3 off = real3_sub(mirrored, real3_of(a->next_direction));
+    worst(&j->tally->mirror, real3_length(off));
+}
+
+/* One light, from the very point that the tracer found. */
+static void judge_light(const judge *j, const ref_ray *ray, int light, bool reached, real scale,
+                        const probe *a) {
+    const ref_primitive *p = &j->ref->primitives[a->object];
+    real3 point = real3_of(a->point), way = real3_sub(j->ref->lights[light], point);
+    ref_face face = ref_nearest_face(p, a->part, point);
+    real side = real3_dot(face.normal, way);
+    if (real3_dot(face.normal, ray->d) > 0) side = -side;
+    ref_ray shadow = {point, way, a->object, a->part};
+    ref_hit hit = {-1, -1, 0}, blocker;
+    bool blocked = false, sure;
+    if (side > 0 && j->ref->scene->lights[light].shadows)
+        for (int32_t i = 0; i < j->ref->scene->object_count && !blocked; i++)
+            if ((blocked = ref_first(&blocker, &j->ref->primitives[i], &shadow, 0, 1)))
+                hit = blocker;
+    if ((side > 0 && !blocked) == reached) return;
+    real length = real3_length(way);
+    real doubt = j->tolerance * (scale + length * (1 + face.twist + face.bend * scale));
+    /* At a ridge the other side counts as well. */
+    ref_face faces[REF_FACES_MAX];
+    int face_count = ref_faces(faces, p, a->part, point), near = 0;
+    for (int i = 0; i < face_count; i++) near += faces[i].distance <= j->tolerance * scale;
+    if (real_abs(side) <= doubt || near > 1)
+        sure = false;
+    else if (side < 0)
+        sure = true;
+    else
+        ref_blocked(&sure, j->ref, &shadow, 1, j->tolerance, -1);
+    probe of_shadow = {.object = a->object, .part = reached};
+    if (!sure)
+        j->tally->ties++;
+    else if (reached)
+        count(j, &j->tally->leaks, "light through a surface", &shadow, hit, &of_shadow);
+    else
+        count(j, &j->tally->acne, "shadow of nothing", &shadow, hit, &of_shadow);
+}
+
+static void judge_lights(const judge *j, const ref_ray *ray, real scale, const probe *a) {
+    const zt_scene *scene = j->ref->scene;
+    int bit = 0;
+    for (int32_t i = 0; i < scene->light_count; i++) {
+        if (scene->lights[i].kind != ZT_LIGHT_POINT) continue;
+        judge_light(j, ray, i, (a->lights >> bit) & 1, scale, a);
+        bit++;
+    }
+}
+
+static void judge_missing(const judge *j, const ref_ray *ray, ref_hit expected,
+                          const probe *a) {
+    bool sure;
+    if (expected.object < 0) return;
+    ref_blocked(&sure, j->ref, ray, (real)INFINITY, j->tolerance, -1);
+    if (!sure)
+        j->tally->ties++;
+    else if (j->closed)
+        count(j, &j->tally->leaks, "leak", ray, expected, a);
+    else
+        count(j, &j->tally->missed, "missed", ray, expected, a);
+}
+
+/* Which surface: the nearest, or one that small changes make the nearest. */
+static bool judge_surface(const judge *j, const ref_ray *ray, real scale, ref_hit expected,
+                          real error, const probe *a) {
+    bool none = expected.object < 0, sure, blocked;
+    if (error > j->tolerance || is_source(j, ray, a)) {
+        count(j, none ? &j->tally->false_hits : &j->tally->wrong,
+              error > j->tolerance ? "not where it says" : "left surface hit", ray, expected,
+              a);
+        return false;
+    }
+    const ref_primitive *p = &j->ref->primitives[a->object];
+    if (a->object == expected.object) {
+        ref_face face = ref_nearest_face(p, a->part, real3_of(a->point));
+        real slant = real_abs(real3_dot(face.normal, ray->d)) / real3_length(ray->d);
+        if (real_abs(a->t - expected.t) * slant <= 4 * j->tolerance * scale) {
+            judge_distance(j, ray, scale, expected, &face, a);
+            return true;
+        }
+    } else if (j->strict && is_equal(p, ray, expected)) {
+        count(j, &j->tally->wrong, "not the first of equals", ray, expected, a);
+        return false;
+    }
+    blocked = ref_blocked(&sure, j->ref, ray, a->t, j->tolerance, -1);
+    if (blocked && sure) {
+        count(j, j->closed ? &j->tally->leaks : &j->tally->wrong, "not the nearest", ray,
+              expected, a);
+        return false;
+    }
+    j->tally->ties++;
+    return true;
+}
+
+void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const probe *a) {
+    tally *t = j->tally;
+    t->rays++;
+    if (a->object < 0) {
+        judge_missing(j, ray, expected, a);
+        return;
+    }
+    t->hits++;
+    if (!isfinite(a->t) || !finite3(a->point) || !finite3(a->normal) ||
+        !finite3(a->next_direction)) {
+        count(j, &t->not_finite, "not finite", ray, expected, a);
+        return;
+    }
+    const ref_primitive *p = &j->ref->primitives[a->object];
+    real3 at = real3_along(ray->o, a->t, ray->d), point = real3_of(a->point);
+    real scale = ref_scale(p, ray, a->t);
+    real error = real_max(ref_nearest_face(p, a->part, at).distance,
+                          ref_nearest_face(p, a->part, point).distance);
+    error = real_max(error, real3_length(real3_sub(point, at)) / 2) / scale;
+    worst(&t->hit, error);
+    if (!(a->t > 0)) {
+        count(j, &t->false_hits, "behind the ray", ray, expected, a);
+        return;
+    }
+    if (!judge_surface(j, ray, scale, expected, error, a)) return;
+    judge_normal(j, p, ray, scale, a);
+    judge_mirror(j, ray, a);
+    if (j->lights) judge_lights(j, ray, scale, a);
+}
+
+bool tally_holds(const tally *t, double tolerance) {
+    return t->hit <= tolerance && t->normal <= tolerance && t->mirror <= tolerance &&
+           t->wrong + t->missed + t->false_hits + t->leaks + t->acne + t->not_finite == 0;
+}
+
+void tally_add(tally *sum, const tally *t) {
+    sum->rays += t->rays;
+    sum->hits += t->hits;
+    worst(&sum->hit, t->hit);
+    worst(&sum->normal, t->normal);
+    worst(&sum->mirror, t->mirror);
+    worst(&sum->forward, t->forward);
+    worst(&sum->relative, t->relative);
+    worst(&sum->condition, t->condition);
+    sum->wrong += t->wrong;
+    sum->missed += t->missed;
+    sum->false_hits += t->false_hits;
+    sum->leaks += t->leaks;
+    sum->acne += t->acne;
+    sum->ties += t->ties;
+    sum->not_finite += t->not_finite;
+    sum->seconds += t->seconds;
+}

@@ -1,0 +1,46 @@
+/* Holds what the tracer says of a ray against the reference, and keeps the worst. */
+#ifndef ZT_TESTS_JUDGE_H
+#define ZT_TESTS_JUDGE_H
+
+#include "probe.h"
+#include "reference.h"
+
+/* Errors are backward errors: the smallest relative change of the numbers of ray and primitive
+ * that makes the answer exact. */
+typedef struct tally {
+    int64_t rays, hits;
+    double hit;         /* worst of distances and points */
+    double normal;      /* of normals */
+    double mirror;      /* of mirrored directions, given the normal */
+    double forward;     /* worst relative error of the distance over its condition number */
+    double relative;    /* worst relative error of the distance, */
+    double condition;   /* and the worst condition number */
+    int64_t wrong;      /* another surface than the nearest */
+    int64_t missed;     /* nothing where there is something */
+    int64_t false_hits; /* something where there is nothing, or the surface that a ray leaves */
+    int64_t leaks;      /* light that went through a surface, or ways through a closed one */
+    int64_t acne;       /* points that nothing shadows, in shadow */
+    int64_t ties;       /* answers that the smallest changes within the tolerance make right */
+    int64_t not_finite;
+    double seconds; /* of the tracer, for all rays with their shadows */
+} tally;
+
+typedef struct judge {
+    const ref_scene *ref;
+    double tolerance; /* the backward error that is allowed; closer things are ties */
+    bool strict;      /* of surfaces that coincide the first must be hit */
+    bool closed;      /* what is missed is a leak */
+    bool lights;      /* whether to look at shadows */
+    bool verbose;     /* print what is wrong */
+    const char *name;
+    tally *tally;
+} judge;
+
+/* `expected` is the reference's answer for the ray. */
+void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const probe *answer);
+
+/* Whether all that must hold does. */
+bool tally_holds(const tally *t, double tolerance);
+void tally_add(tally *sum, const tally *t);
+
+#endif

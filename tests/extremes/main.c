@@ -1,0 +1,69 @@
+/* Holds the tracer against the reference where numbers are extreme, and prints how exact and
+ * how fast it was:
+ *     extremes [--case NAME] [--scenes N] [--csv FILE] [--verbose] [--digest]
+ * --scenes: how many scenes of each case instead of the few of the short run. --digest prints a
+ * checksum of all answers instead, for comparisons between kernels. Exits with 1 where what
+ * must hold does not. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "table.h"
+
+typedef struct options {
+    const char *only, *csv;
+    int scenes;
+    bool verbose, digest;
+} options;
+
+static bool read_options(options *o, int count, char **words) {
+    for (int i = 1; i < count; i++) {
+        const char *next = i + 1 < count ? words[i + 1] : NULL;
+        if (strcmp(words[i], "--verbose") == 0)
+            o->verbose = true;
+        else if (strcmp(words[i], "--digest") == 0)
+            o->digest = true;
+        else if (strcmp(words[i], "--case") == 0 && next)
+            o->only = words[++i];
+        else if (strcmp(words[i], "--csv") == 0 && next)
+            o->csv = words[++i];
+        else if (strcmp(words[i], "--scenes") == 0 && next)
+            o->scenes = atoi(words[++i]);
+        else
+            return false;
+    }
+    return true;
+}
+
+int main(int count, char **words) {
+    options o = {0};
+    if (!read_options(&o, count, words)) {
+        fputs("usage: extremes [--case NAME] [--scenes N] [--csv FILE] [--verbose] "
+              "[--digest]\n",
+              stderr);
+        return 2;
+    }
+    FILE *csv = o.csv ? fopen(o.csv, "w") : NULL;
+    if (o.csv && !csv) {
+        perror(o.csv);
+        return 3;
+    }
+    int failures = 0;
+    if (!o.digest) table_begin(csv);
+    for (int list = 0; cases_all[list]; list++)
+        for (const extreme_case *c = cases_all[list]; c->name; c++) {
+            static run_result result;
+            if (o.only && strcmp(o.only, c->name) != 0) continue;
+            if (!run_case(&result, c, 0, o.scenes > 0 ? o.scenes : c->scenes, o.verbose)) {
+                fprintf(stderr, "%s: the tracer could not be opened\n", c->name);
+                return 3;
+            }
+            if (o.digest)
+                for (int i = 0; i < PROBE_PRECISIONS; i++)
+                    printf("%s %d %016llx\n", c->name, i, (unsigned long long)result.digest[i]);
+            else
+                failures += table_case(csv, c, &result);
+        }
+    if (csv && fclose(csv)) return 3;
+    if (failures) printf("%d do not hold\n", failures);
+    return failures ? 1 : 0;
+}

@@ -1,0 +1,24 @@
+/* Runs cases: builds their scenes, asks the tracer, has its answers judged. */
+#ifndef ZT_TESTS_RUN_H
+#define ZT_TESTS_RUN_H
+
+#include "cases.h"
+#include "judge.h"
+
+/* What is allowed: the smallest relative change that makes an answer exact. */
+static inline double run_tolerance(probe_precision chosen) {
+    return chosen == PROBE_SINGLE ? 1e-6 : 1e-12;
+}
+
+typedef struct run_result {
+    tally tallies[PROBE_PRECISIONS];
+    int64_t chose_single; /* scenes for which auto did */
+    int64_t scenes;
+    uint64_t digest[PROBE_PRECISIONS]; /* of all answers, bit by bit */
+} run_result;
+
+/* Scenes from number `first` on, `count` of them. False where the tracer could not be opened.
+ */
+bool run_case(run_result *result, const extreme_case *c, int first, int count, bool verbose);
+
+#endif
