@@ -36,6 +36,7 @@ static inline zt_animation *small_film(int64_t frame_count, zt_rate rate) {
     film->rest.objects[INNER].parent = GROUP;
     film->rest.camera.aimed = true;
     film->rest.camera.position = (vec3){0, 0, 10};
+    film->rest.lights[0].position = (vec3){0, 40, 0}; /* outside of all balls */
     film->things = own;
     film->thing_count = THING_COUNT;
     film->tracks = ZT_PUSH(arena, zt_track, TRACKS_MAX);

@@ -150,7 +150,7 @@ static void silence(void **state) {
     (void)state;
     zt_animation *film = small_film(72, (zt_rate){24, 1});
     const double times[] = {0, 0.1, 2}, radius[] = {1, 0, 5},
-                 place[] = {-1e6, 0, 0, 1e6, 0, 0, 0, 5, 0};
+                 place[] = {-1e6, 0, 0, 1e6, 0, 0, 0, 9, 0};
     add_simple(film, "ball.radius", ZT_CURVE_SMOOTH, 3, times, radius);
     add_simple(film, "lamp.position", ZT_CURVE_CATMULL_ROM, 3, times, place);
     told t = advice_on(film);

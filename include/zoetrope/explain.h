@@ -109,10 +109,11 @@ zt_status zt_subject_explain(zt_explanation *explanation, const zt_subject *subj
 
 /* Tells as warnings, at their places, what is legal but probably not meant and shows only in
  * motion: values that leave their range between keys or become too large for a number, movement
- * between equal keys, a camera that looks along its up vector or is inside of a sphere or a
- * mesh. Looks at every frame and between frames, but at no more than 10,000 moments, evenly
- * spread over longer films. ZT_EDESCRIPTION, told, where an expression has no value at one of
- * them; ZT_EMEMORY. */
+ * between equal keys; a camera that looks along its up vector or is inside of something solid;
+ * a light on a surface, or shut in by something solid that the camera is not in; transforms
+ * that nearly flatten, tori without a hole, tubes without a length. Looks at every frame and
+ * between frames, but at no more than 10,000 moments, evenly spread over longer films.
+ * ZT_EDESCRIPTION, told, where an expression has no value at one of them; ZT_EMEMORY. */
 zt_status zt_animation_advise(const zt_animation *animation, zt_listener listener);
 
 #ifdef __cplusplus

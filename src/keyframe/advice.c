@@ -198,5 +198,7 @@ zt_status zt_animation_advise(const zt_animation *animation, zt_listener listene
         advise_overflow(animation, track, listener);
         advise_equal_keys(track, listener);
     }
-    return zt_advice_camera(animation, listener);
+    ZT_TRY(zt_advice_camera(animation, listener));
+    ZT_TRY(zt_advice_lamps(animation, listener));
+    return zt_advice_shapes(animation, listener);
 }

@@ -10,8 +10,7 @@ static const double sine_min = 0.0087;
 /* What was found while going through the film's moments. */
 typedef struct findings {
     double along_up_s, at_itself_s; /* the first moment; NAN for never */
-    double *inside_s, *outside_s;   /* per object: the first and the last moment within it */
-    int64_t triangles_left;         /* that may still be looked at for being inside of meshes */
+    zt_advice_span *inside;         /* per object: within it */
     vec3 ahead, aside;              /* of the moment before: the view, and it without its up */
 } findings;
 
@@ -21,14 +20,15 @@ static const zt_track *track_named(const zt_animation *animation, const char *na
     return NULL;
 }
 
-/* Where the camera's movement stands in the description; NULL for a camera at rest. */
+/* Where the camera's movement stands in the description, or the camera itself; NULL where that
+ * is not known. */
 static const zt_place *camera_place(const zt_animation *animation) {
     static const char *const names[] = {"camera.look_at", "camera.position", "camera.up"};
     for (int i = 0; i < 3; i++) {
         const zt_track *track = track_named(animation, names[i]);
         if (track && track->place.line > 0) return &track->place;
     }
-    return NULL;
+    return zt_advice_name_of(animation, ZT_OWNER_CAMERA, 0).place;
 }
 
 static void look_along(findings *f, const zt_camera *camera, double time_s) {
@@ -48,49 +48,14 @@ static void look_along(findings *f, const zt_camera *camera, double time_s) {
     f->aside = aside;
 }
 
-/* Whether a point of the mesh's space is within the mesh. */
-static bool within_mesh(findings *f, const zt_mesh *mesh, vec3 point) {
-    bool in_bounds = point.x > mesh->low.x && point.x < mesh->high.x && point.y > mesh->low.y &&
-                     point.y < mesh->high.y && point.z > mesh->low.z && point.z < mesh->high.z;
-    if (!in_bounds || f->triangles_left < mesh->triangle_count) return false;
-    f->triangles_left -= mesh->triangle_count;
-    return fabs(zt_mesh_winding(mesh, point)) > 0.5;
-}
-
-/* Whether the eye, where `world` has its origin, is within an object; a flattened one has no
- * inside. */
-static bool within(findings *f, const zt_scene *scene, const zt_object *object,
-                   const xform *world) {
-    xform place = *world;
-    if (object->shape == ZT_SHAPE_MESH) {
-        const zt_placement *p = &object->placement;
-        xform own = xform_place(p->position, p->rotation, p->scale);
-        place = xform_mul(world, &own);
-    }
-    vec3 eye = xform_inverse(&place).shift;
-    if (object->shape == ZT_SHAPE_MESH)
-        return within_mesh(f, &scene->meshes[object->mesh], eye);
-    return vec3_length(vec3_sub(eye, object->sphere.center)) < object->sphere.radius;
-}
-
-static void look_around(findings *f, const zt_scene *scene, xform *worlds, double time_s) {
-    zt_scene_worlds(worlds, scene, scene->camera.position);
-    for (int32_t i = 0; i < scene->object_count; i++) {
-        const zt_object *object = &scene->objects[i];
-        if (object->shape != ZT_SHAPE_SPHERE && object->shape != ZT_SHAPE_MESH) continue;
-        if (!within(f, scene, object, &worlds[i])) continue;
-        if (isnan(f->inside_s[i])) f->inside_s[i] = time_s;
-        f->outside_s[i] = time_s;
-    }
-}
-
-static const char *object_name(const zt_animation *animation, int32_t object) {
-    bool mesh = animation->rest.objects[object].shape == ZT_SHAPE_MESH;
-    zt_owner owner = mesh ? ZT_OWNER_MESH : ZT_OWNER_SPHERE;
-    for (int32_t i = 0; i < animation->thing_count; i++)
-        if (animation->things[i].owner == owner && animation->things[i].index == object)
-            return animation->things[i].name;
-    return mesh ? "a mesh" : "a sphere";
+static void look(void *user, const zt_advice_moment *moment) {
+    findings *f = user;
+    const zt_scene *scene = moment->scene;
+    look_along(f, &scene->camera, moment->time_s);
+    zt_scene_worlds(moment->worlds, scene, scene->camera.position);
+    for (int32_t i = 0; i < scene->object_count; i++)
+        if (zt_advice_within(moment, &scene->objects[i], &moment->worlds[i]))
+            zt_advice_met(&f->inside[i], moment->time_s);
 }
 
 static void tell(const findings *f, const zt_animation *animation, zt_listener listener) {
@@ -105,51 +70,28 @@ static void tell(const findings *f, const zt_animation *animation, zt_listener l
                    "the camera looks along its up vector at %s: the picture turns over there; "
                    "choose another \"up\"",
                    zt_moment_in_words(rate, f->along_up_s).text);
-    for (int32_t i = 0; i < animation->rest.object_count; i++) {
-        if (isnan(f->inside_s[i])) continue;
-        bool once = f->inside_s[i] == f->outside_s[i];
-        zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s %s %s%s%s",
-                   object_name(animation, i), once ? "at" : "from",
-                   zt_moment_in_words(rate, f->inside_s[i]).text, once ? "" : " to ",
-                   once ? "" : zt_moment_in_words(rate, f->outside_s[i]).text);
+    int told = 0;
+    for (int32_t i = 0; i < animation->rest.object_count && told < ZT_ADVICE_TOLD_MAX; i++) {
+        if (isnan(f->inside[i].first_s)) continue;
+        zt_tell_at(listener, ZT_WARNING, place, "the camera is inside of %s %s",
+                   zt_advice_name_of_object(animation, i).text,
+                   zt_advice_when(&animation->film, f->inside[i]).text);
+        told++;
     }
-}
-
-static zt_status look(findings *f, const zt_animation *animation, zt_arena *arena,
-                      zt_listener listener) {
-    const zt_film *film = &animation->film;
-    int64_t objects = animation->rest.object_count, tracks = animation->track_count;
-    int64_t most = ZT_ADVICE_WORK_MAX / (objects + tracks + 1);
-    if (most > ZT_ADVICE_MOMENTS_MAX) most = ZT_ADVICE_MOMENTS_MAX;
-    int64_t count = tracks > 0 ? zt_advice_moment_count(film, most) : 1;
-    for (int64_t i = 0; i < count; i++) {
-        double time_s = zt_advice_moment_s(film, i, count);
-        zt_scene scene;
-        zt_arena_reset(arena);
-        ZT_TRY(zt_animation_freeze(&scene, animation, time_s, arena, listener));
-        xform *worlds = ZT_PUSH(arena, xform, (size_t)objects);
-        if (!worlds) return ZT_EMEMORY;
-        look_along(f, &scene.camera, time_s);
-        look_around(f, &scene, worlds, time_s);
-    }
-    return ZT_OK;
 }
 
 zt_status zt_advice_camera(const zt_animation *animation, zt_listener listener) {
     size_t count = (size_t)animation->rest.object_count;
-    zt_arena own = {0}, frame = {0};
-    findings f = {.triangles_left = ZT_ADVICE_TRIANGLES_MAX,
-                  .along_up_s = NAN,
+    zt_arena arena = {0};
+    findings f = {.along_up_s = NAN,
                   .at_itself_s = NAN,
-                  .inside_s = ZT_PUSH(&own, double, count),
-                  .outside_s = ZT_PUSH(&own, double, count)};
-    zt_status status = f.inside_s && f.outside_s ? ZT_OK : ZT_EMEMORY;
+                  .inside = ZT_PUSH(&arena, zt_advice_span, count)};
+    zt_status status = f.inside ? ZT_OK : ZT_EMEMORY;
     if (status == ZT_OK) {
-        for (size_t i = 0; i < count; i++) f.inside_s[i] = NAN;
-        status = look(&f, animation, &frame, listener);
+        for (size_t i = 0; i < count; i++) f.inside[i] = zt_advice_never;
+        status = zt_advice_each_moment(animation, 1, look, &f, listener);
     }
     if (status == ZT_OK) tell(&f, animation, listener);
-    zt_arena_free(&frame);
-    zt_arena_free(&own);
+    zt_arena_free(&arena);
     return status;
 }
