@@ -43,8 +43,8 @@ set(doors
     "libsw|encode/video.c"
     "librsvg/|encode/raster.c")
 
-# Headers of C and POSIX that any file may include, and those of C++, which have no ending.
-set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
+# Headers of C, POSIX and the compiler that any file may include, and those of C++, which have no ending.
+set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|immintrin|inttypes|limits|locale|math|memory|sched|setjmp|\
 signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
 unistd|sys/[a-z]+)(\\.h)?$")
 

@@ -36,6 +36,11 @@ static void compare(const float *values, int count, zt_view view) {
     zt_image image = {.width = count / 3, .height = 1, .pixels = pixels};
     for (int i = 0; i < count; i++) pixels[i / 3 * 4 + i % 3] = values[i];
     zt_develop_rgb8(bytes, 0, &image, view, 0, 1);
+    /* Where rows are one pixel wide, each is developed alone, and not beside others. */
+    zt_image narrow = {.width = 1, .height = count / 3, .pixels = pixels};
+    static uint8_t alone[BATCH];
+    zt_develop_rgb8(alone, 3, &narrow, view, 0, count / 3);
+    assert_memory_equal(alone, bytes, (size_t)count);
     for (int i = 0; i < count; i++) {
         int expected = (int)floorl(255 * reference(values[i], view) + 0.5L);
         if (bytes[i] != expected)

@@ -7,8 +7,12 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 #include <threads.h>
+#if defined __x86_64__
+#include <immintrin.h>
+#endif
 
 /* Below 2^-13 every view gives 0 of 255; from 1 on, 255. Between lie 13 octaves. */
 #define FLOOR_BITS UINT32_C(0x39000000)
@@ -91,17 +95,67 @@ static uint8_t code_at(const uint32_t *table, uint32_t place) {
     return (uint8_t)((table[place >> BUCKET_BITS] + (place & 0xffff)) >> BUCKET_BITS);
 }
 
+static void develop_pixel(uint8_t *rgb, const float *pixel, const uint32_t *table) {
+    uint4 places = table_places(pixel);
+    for (int c = 0; c < 3; c++) rgb[c] = code_at(table, places[c]);
+}
+
+#if defined __x86_64__
+#define WIDE __attribute__((target("avx2")))
+
+/* Two pixels at a time, in Intel's own words: the vectors of C know no tables, and compilers
+ * take looking up eight numbers at once for dearer than it is. Gives the codes as 32-bit
+ * numbers. */
+WIDE static inline __m256i codes_of_two(const float *pixels, const uint32_t *table) {
+    /* Where one of the two is no number, the larger one is the second. */
+    __m256 values = _mm256_max_ps(_mm256_loadu_ps(pixels), _mm256_set1_ps(0x1p-13f));
+    __m256i bits =
+        _mm256_min_epi32(_mm256_castps_si256(values), _mm256_set1_epi32(ONE_BITS - 1));
+    __m256i places = _mm256_sub_epi32(bits, _mm256_set1_epi32(FLOOR_BITS));
+    __m256i buckets = _mm256_srli_epi32(places, BUCKET_BITS);
+    __m256i steps = _mm256_i32gather_epi32((const int *)table, buckets, sizeof *table);
+    __m256i within = _mm256_and_si256(places, _mm256_set1_epi32((1 << BUCKET_BITS) - 1));
+    return _mm256_srli_epi32(_mm256_add_epi32(steps, within), BUCKET_BITS);
+}
+
+/* Develops the pixels of a row by fours; returns how many that are. */
+WIDE static int develop_fours(uint8_t *rgb, const float *pixel, int width,
+                              const uint32_t *table) {
+    /* Of pixels 0 and 2 in one half and 1 and 3 in the other to their places among 12 bytes. */
+    const __m256i spread =
+        _mm256_setr_epi8(0, 1, 2, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1,
+                         0, 1, 2, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1);
+    int x = 0;
+    for (; x + 4 <= width; x += 4, pixel += 16, rgb += 12) {
+        __m256i words =
+            _mm256_packus_epi32(codes_of_two(pixel, table), codes_of_two(pixel + 8, table));
+        __m256i halves = _mm256_shuffle_epi8(_mm256_packus_epi16(words, words), spread);
+        __m128i bytes =
+            _mm_or_si128(_mm256_castsi256_si128(halves), _mm256_extracti128_si256(halves, 1));
+        memcpy(rgb, &bytes, 12);
+    }
+    return x;
+}
+
+static bool can_be_wide(void) { return __builtin_cpu_supports("avx2"); }
+#else
+static int develop_fours(uint8_t *rgb, const float *pixel, int width, const uint32_t *table) {
+    (void)rgb, (void)pixel, (void)width, (void)table;
+    return 0;
+}
+
+static bool can_be_wide(void) { return false; }
+#endif
+
 void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
                      int first, int last) {
     call_once(&tables_once, make_tables);
     const uint32_t *table = tables[view];
+    const bool wide = can_be_wide();
     for (int y = first; y < last; y++, bytes += stride) {
-        const float *pixel = image->pixels + (size_t)y * (size_t)image->width * 4;
-        uint8_t *rgb = bytes;
-        for (int x = 0; x < image->width; x++, pixel += 4, rgb += 3) {
-            uint4 places = table_places(pixel);
-            for (int c = 0; c < 3; c++) rgb[c] = code_at(table, places[c]);
-        }
+        const float *row = image->pixels + (size_t)y * (size_t)image->width * 4;
+        int x = wide ? develop_fours(bytes, row, image->width, table) : 0;
+        for (; x < image->width; x++) develop_pixel(bytes + 3 * x, row + 4 * (size_t)x, table);
     }
 }
 
