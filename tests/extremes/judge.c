@@ -50,22 +50,37 @@ static void judge_distance(const judge *j, const ref_ray *ray, real scale, ref_h
     worst(&j->tally->forward, error / expected.t / condition);
 }
 
-static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *ray, real scale,
-                         const probe *a) {
-    ref_face faces[REF_FACES_MAX];
-    real best = (real)INFINITY;
+/* How far a normal is from that of the nearest faces, over how sensitive those are. Where they
+ * bend more close by than at the point itself, `around` looks there. */
+static real normal_error(const judge *j, const ref_primitive *p, const probe *a, real scale,
+                         bool around) {
+    ref_face faces[REF_FACES_MAX], moved[REF_FACES_MAX];
+    real best = (real)INFINITY, step = j->tolerance * scale;
     real3 point = real3_of(a->point), normal = real3_of(a->normal);
-    if (j->ref->scene->objects[p->object].smooth) return;
     int face_count = ref_faces(faces, p, a->part, point);
+    for (int i = 0; around && i < 6; i++) {
+        real3 side = {i / 2 == 0, i / 2 == 1, i / 2 == 2};
+        ref_faces(moved, p, a->part, real3_along(point, i % 2 ? step : -step, side));
+        for (int k = 0; k < face_count; k++) {
+            faces[k].bend = real_max(faces[k].bend, moved[k].bend);
+            faces[k].twist = real_max(faces[k].twist, moved[k].twist);
+        }
+    }
     for (int i = 0; i < face_count; i++) {
-        if (faces[i].distance > j->tolerance * scale) continue;
+        if (faces[i].distance > step) continue;
         real3 n = faces[i].normal;
         if (real3_dot(n, normal) < 0) n = real3_scale(n, -1);
         real error = real3_length(real3_sub(normal, n));
         best = real_min(best, error / (faces[i].twist + faces[i].bend * scale));
     }
-    (void)ray;
-    worst(&j->tally->normal, best);
+    return best;
+}
+
+static void judge_normal(const judge *j, const ref_primitive *p, real scale, const probe *a) {
+    if (j->ref->scene->objects[p->object].smooth) return;
+    real error = normal_error(j, p, a, scale, false);
+    if (error > j->tolerance) error = normal_error(j, p, a, scale, true);
+    worst(&j->tally->normal, error);
 }
 
 static void judge_mirror(const judge *j, const ref_ray *ray, const probe *a) {
@@ -91,13 +106,15 @@ static void judge_light(const judge *j, const ref_ray *ray, int light, bool reac
             if ((blocked = ref_first(&blocker, &j->ref->primitives[i], &shadow, 0, 1)))
                 hit = blocker;
     if ((side > 0 && !blocked) == reached) return;
-    real length = real3_length(way);
-    real doubt = j->tolerance * (scale + length * (1 + face.twist + face.bend * scale));
+    real length = real3_length(way), turn = j->tolerance * (face.twist + face.bend * scale);
+    real doubt = j->tolerance * (scale + length) + turn * length;
+    /* Along the surface it is open which side the ray came from. */
+    bool along = real_abs(real3_dot(face.normal, real3_unit(ray->d))) <= turn + j->tolerance;
     /* At a ridge the other side counts as well. */
     ref_face faces[REF_FACES_MAX];
     int face_count = ref_faces(faces, p, a->part, point), near = 0;
     for (int i = 0; i < face_count; i++) near += faces[i].distance <= j->tolerance * scale;
-    if (real_abs(side) <= doubt || near > 1)
+    if (along || real_abs(side) <= doubt || near > 1)
         sure = false;
     else if (side < 0)
         sure = true;
@@ -192,7 +209,7 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
         return;
     }
     if (!judge_surface(j, ray, scale, expected, error, a)) return;
-    judge_normal(j, p, ray, scale, a);
+    judge_normal(j, p, scale, a);
     judge_mirror(j, ray, a);
     if (j->lights) judge_lights(j, ray, scale, a);
 }

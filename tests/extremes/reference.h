@@ -32,13 +32,16 @@ typedef struct ref_primitive {
     real3 rows[3];
     real3 center;
     real a, b;
+    affine place; /* from its own space to the world, */
+    real3 middle; /* and a ball around it there */
+    real round;
     real3 normal; /* of a plane: unit, normal . p = level */
     real level;
     ref_triangle *triangles; /* of a triangle or mesh */
     int32_t triangle_count;
     real extent; /* how far its reference point is from the origin, and its size */
     real grain;  /* of a plane far from the world's origin: what doubles can say of it */
-    vec3 around; /* a ball around it; of a plane: endless */
+    vec3 around; /* a ball around it in the world; of a plane: endless */
     double reach;
 } ref_primitive;
 
@@ -85,7 +88,7 @@ bool ref_blocked(bool *sure, const ref_scene *ref, const ref_ray *ray, real to, 
 typedef struct ref_face {
     real3 normal;  /* unit, outward; of what is flat: as given */
     real distance; /* of the point to it */
-    real bend;     /* how much the normal turns for a step of one along the face */
+    real bend;     /* how much the normal turns for a step of one */
     real twist;    /* and how much for a relative change of one of the primitive's numbers */
 } ref_face;
 enum { REF_FACES_MAX = 6 };

@@ -18,13 +18,13 @@ static real3 turn_back(const ref_primitive *p, real3 v) {
                      real3_scale(p->rows[2], v.z));
 }
 
-/* How much the world's normal along M^T g turns for a step along the face. */
+/* How much the world's normal along M^T g turns for a step to any side, off the face too. */
 static real world_bend(const ref_primitive *p, const own_face *f, real3 normal, real length) {
     real3 x, y;
     real own = real3_length(f->gradient), sum = 0;
     real3_frame(&x, &y, normal);
-    for (int side = 0; side < 2; side++) {
-        real3 step = side ? y : x, turned = {0, 0, 0};
+    for (int side = 0; side < 3; side++) {
+        real3 step = side == 0 ? x : side == 1 ? y : normal, turned = {0, 0, 0};
         real3 s = {real3_dot(p->rows[0], step), real3_dot(p->rows[1], step),
                    real3_dot(p->rows[2], step)};
         for (int i = 0; i < 2; i++)

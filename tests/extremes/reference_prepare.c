@@ -21,6 +21,9 @@ static void place(ref_primitive *p, const affine *world, const affine *own, real
     affine whole = affine_mul(world, own);
     p->present = affine_inverse_rows(p->rows, &whole);
     p->center = whole.shift;
+    p->place = whole;
+    p->middle = middle;
+    p->round = reach;
     real3 columns[3] = {whole.x, whole.y, whole.z};
     real stretch = 0;
     for (int i = 0; i < 3; i++) stretch += real3_dot(columns[i], columns[i]);

@@ -60,9 +60,9 @@ static void lies(void **state) {
     assert_true(t->hit > 1e-6 && t->wrong > 5);
     run("torus", MOCK_TURNED);
     assert_true(t->normal > 1e-7);
-    run("capsule", MOCK_DARK);
+    run("sphere", MOCK_DARK);
     assert_true(t->acne > 5);
-    run("cylinder", MOCK_LIT);
+    run("sphere", MOCK_LIT);
     assert_true(t->leaks > 5);
 }
 
