@@ -204,11 +204,12 @@ static inline zt_stretch cone_side_stretch(real fx, real fy, real fz, real ex, r
     real t0 = q / a, t1 = q == 0 ? t0 : c / q;
     real first = k + (t0 < t1 ? t0 : t1), second = k + (t0 < t1 ? t1 : t0);
     /* Steeper than the sides, the ray is within them from some point on, or up to it. */
-    bool steep = a<0, widens = w1> 0;
+    bool steep = a < 0;
+    bool widens = w1 > 0;
     real in = steep ? (widens ? second : -REAL_INFINITY) : first;
     real out = steep ? (widens ? REAL_INFINITY : first) : second;
     bool none = (!steep) & ((square < 0) | ((q == 0) & (c > 0)));
-    return (zt_stretch){none ? REAL_INFINITY : in, out};
+    return (zt_stretch){none ? REAL_INFINITY : in, none ? k + t0 : out};
 }
 
 static inline real zt_cone_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
