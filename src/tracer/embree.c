@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "base/diag.h"
+#include "tracer/isa.h"
 
 enum { LANES = ZT_BVH_LANES };
 
@@ -107,7 +108,7 @@ static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
                                               .upper_z = high[2]};
 }
 
-static void visit_box(const struct RTCIntersectFunctionNArguments *arguments) {
+ZT_CLONES static void visit_box(const struct RTCIntersectFunctionNArguments *arguments) {
     const look *l = (const look *)arguments->context;
     uint32_t lanes = 0;
     for (int lane = 0; lane < LANES; lane++)
@@ -142,7 +143,7 @@ static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_lif
     return ZT_OK;
 }
 
-/* The power of two that takes the largest coordinate to below 1; numbers that are not finite
+/* The power of two that takes the largest coordinate to about 1; numbers that are not finite
  * are passed over. */
 static float scale_of(const zt_bvh_box *boxes, int32_t count) {
     float largest = 0;
@@ -154,7 +155,7 @@ static float scale_of(const zt_bvh_box *boxes, int32_t count) {
         }
     int exponent;
     frexpf(largest, &exponent);
-    return ldexpf(1, -exponent < 126 ? -exponent : 126);
+    return ldexpf(1, exponent < -126 ? 126 : exponent > 126 ? -126 : -exponent);
 }
 
 static zt_status embree_of_boxes(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
@@ -185,34 +186,31 @@ static inline void exponent_of(float *power, float *inverse, float a) {
 static inline float larger(float a, float b) { return a > b ? a : b; }
 
 /* Fills a packet with rays from `first` on. Returns whether any of them looks anywhere. */
-static bool load_packet(struct RTCRay16 *packet, int *valid, look *l, float scale) {
-    const zt_bvh_rays *rays = l->rays;
-    int any = 0;
+ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restrict valid,
+                                  float *restrict stretches, const zt_bvh_rays *restrict rays,
+                                  int first, float scale) {
+    int any = 0, count = rays->count - first;
+    WIDE_LOOP
     for (int lane = 0; lane < LANES; lane++) {
-        int i = l->first + lane;
-        float ox = rays->ox[i], oy = rays->oy[i], oz = rays->oz[i];
+        int i = first + lane;
         float dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
         float length, shrink;
         exponent_of(&length, &shrink, larger(larger(fabsf(dx), fabsf(dy)), fabsf(dz)));
         float stretch = length * (scale * FURTHER);
+        float ox = rays->ox[i] * scale, oy = rays->oy[i] * scale, oz = rays->oz[i] * scale;
         float far = rays->far[i] * stretch;
-        packet->org_x[lane] = ox *= scale;
-        packet->org_y[lane] = oy *= scale;
-        packet->org_z[lane] = oz *= scale;
-        packet->dir_x[lane] = dx *= shrink;
-        packet->dir_y[lane] = dy *= shrink;
-        packet->dir_z[lane] = dz *= shrink;
-        packet->tnear[lane] = 0;
+        packet->org_x[lane] = ox;
+        packet->org_y[lane] = oy;
+        packet->org_z[lane] = oz;
+        packet->dir_x[lane] = dx * shrink;
+        packet->dir_y[lane] = dy * shrink;
+        packet->dir_z[lane] = dz * shrink;
         packet->tfar[lane] = far;
-        packet->time[lane] = 0;
-        packet->mask[lane] = ~0u;
-        packet->id[lane] = 0;
-        packet->flags[lane] = 0;
-        l->stretch[lane] = stretch;
-        float zero = (ox + oy + oz + dx + dy + dz) * 0; /* NaN where one is not finite */
-        valid[lane] =
-            -((i < rays->count) & (far > 0) & (zero == 0) & (length > 0) & (shrink > 0));
-        any |= valid[lane];
+        stretches[lane] = stretch;
+        float zero = (ox + oy + oz + (dx + dy + dz) * shrink) * 0; /* NaN: not finite */
+        int looks = -((lane < count) & (far > 0) & (zero == 0) & (length > 0) & (shrink > 0));
+        valid[lane] = looks;
+        any |= looks;
     }
     return any != 0;
 }
@@ -223,12 +221,12 @@ static void embree_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind,
     look l = {.rays = rays, .visit = visit, .user = user};
     rtcInitIntersectContext(&l.context);
     if (kind == ZT_BVH_COHERENT) l.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) struct RTCRayHit16 packet = {0}; /* what no ray changes is set once */
+    memset(packet.ray.mask, 0xff, sizeof packet.ray.mask);
+    memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID);
     for (; l.first < rays->count; l.first += LANES) {
         alignas(64) int valid[LANES];
-        alignas(64) struct RTCRayHit16 packet;
-        for (int lane = 0; lane < LANES; lane++)
-            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-        if (load_packet(&packet.ray, valid, &l, h->scale))
+        if (load_packet(&packet.ray, valid, l.stretch, rays, l.first, h->scale))
             rtcIntersect16(valid, h->scene, &l.context, &packet);
     }
 }

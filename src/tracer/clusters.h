@@ -1,0 +1,32 @@
+/* The triangles of a mesh in clusters of up to eight that lie close together: what the boxes of
+ * a mesh's hierarchy hold, made so that one ray meets eight triangles at a time. */
+#ifndef ZT_TRACER_CLUSTERS_H
+#define ZT_TRACER_CLUSTERS_H
+
+#include <stdalign.h>
+#include <stdint.h>
+
+#include <zoetrope/status.h>
+
+#include "tracer/bvh.h"
+
+/* Corner 0, 1 and 2 of each triangle, by axis: corners[corner][axis][triangle]. Where there are
+ * fewer than eight, the last one is there again. */
+enum { ZT_CLUSTER = 8 };
+typedef struct zt_cluster {
+    alignas(32) float corners[3][3][ZT_CLUSTER];
+    int32_t triangles[ZT_CLUSTER]; /* which of the mesh */
+} zt_cluster;
+
+typedef struct zt_clusters {
+    zt_cluster *clusters;
+    zt_bvh_box *boxes; /* one around each cluster */
+    int32_t count;
+} zt_clusters;
+
+/* `positions` are three finite floats for each vertex, `triangles` three indices each. */
+zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint32_t *triangles,
+                            int32_t triangle_count);
+void zt_clusters_free(zt_clusters *clusters);
+
+#endif
