@@ -13,18 +13,19 @@ static void read_pattern(zt_reading *reading, const zt_fields *fields, zt_materi
     static const char *const patterns[] = {[ZT_PATTERN_NONE] = "none",
                                            [ZT_PATTERN_CHECKER] = "checker",
                                            [ZT_PATTERN_STRIPES] = "stripes"};
-    static const char *const keys[] = {"pattern_direction", "other_color", "pattern_size"};
+    static const char *const keys[] = {"other_color", "pattern_size", "pattern_direction"};
+    enum { DIRECTION = 2 }; /* the last of them is for stripes, the others are for both */
     zt_mistakes *mistakes = &reading->mistakes;
     const zt_node *node = zt_field(fields, "pattern");
     int pattern = ZT_PATTERN_NONE;
     if (node && !zt_read_choice(&pattern, mistakes, node, "pattern", patterns, 3)) return;
     material->pattern = (zt_pattern)pattern;
     if (pattern == ZT_PATTERN_STRIPES) return;
-    for (int i = 0; i < (pattern == ZT_PATTERN_NONE ? 3 : 1); i++) {
+    for (int i = pattern == ZT_PATTERN_NONE ? 0 : DIRECTION; i <= DIRECTION; i++) {
         const zt_node *idle = zt_field(fields, keys[i]);
         if (idle)
             zt_doubt(mistakes, &idle->place, "\"%s\" does nothing without \"pattern: %s\"",
-                     keys[i], i == 0 ? "stripes" : "checker");
+                     keys[i], i == DIRECTION ? "stripes" : "checker");
     }
 }
 
