@@ -36,8 +36,8 @@ static void count_call(void *user, int task, int worker) {
     atomic_fetch_sub(&t->at_work[worker], 1);
 }
 
-/* Each task is called once, over many rounds, no worker number twice at a time; and the pool's
- * threads leave signals to the program. */
+/* Each task is called once, over many rounds, some of which find the threads asleep, no worker
+ * number twice at a time; and the pool's threads leave signals to the program. */
 static void pool_tasks(void **state) {
     (void)state;
     const int thread_counts[] = {1, 2, 3, THREADS_MAX}, task_counts[] = {0, 1, 7, TASKS_MAX};
@@ -48,6 +48,7 @@ static void pool_tasks(void **state) {
         tally t = {.thread_count = thread_counts[i]};
         int expected[TASKS_MAX] = {0};
         for (int round = 0; round < 200; round++) {
+            if (round % 20 == 0) nanosleep(&(struct timespec){.tv_nsec = 200 * 1000}, NULL);
             int count = task_counts[round % 4];
             zt_pool_run(pool, count, count_call, &t);
             for (int k = 0; k < count; k++) expected[k]++;

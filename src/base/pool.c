@@ -1,6 +1,11 @@
 /* Two ways to use threads: a pool that shares out numbered tasks by an atomic counter, and an
  * errand boy that does one thing behind the caller's back. Locks are taken when work begins and
- * ends, never between tasks. */
+ * ends, never between tasks.
+ *
+ * A thread that sleeps takes some 20 microseconds to wake, as long as a small frame's tiles
+ * take. So a run does not wait for workers that have not come by the time all tasks are taken,
+ * and who waits for another thread looks for it a little, giving way to all others, before it
+ * sleeps. */
 #include "base/pool.h"
 
 #include <pthread.h>
@@ -11,14 +16,18 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "base/clock.h"
+
 struct zt_pool {
     pthread_mutex_t mutex;
     pthread_cond_t work_came, work_done;
     pthread_t *threads; /* thread_count - 1 of them; worker i + 1 is threads[i] */
     int thread_count;
-    unsigned round; /* counts the runs, so that a worker knows a new one from the last */
-    int busy_count; /* started workers that have not finished this round */
-    bool closing;
+    /* Changed under the lock, looked at without. */
+    atomic_uint round;     /* counts the runs, so that a worker knows a new one from the last */
+    atomic_int busy_count; /* workers that take part in this round and have not left it */
+    atomic_bool closing;
+    bool open; /* this round can be joined: there may be tasks left */
     void (*task)(void *user, int task, int worker);
     void *user;
     int task_count;
@@ -55,6 +64,30 @@ static void take_tasks(zt_pool *pool, int index) {
         pool->task(pool->user, task, index);
 }
 
+static const double look_s = 50e-6;
+
+static bool has_come(zt_pool *pool, unsigned seen_round) {
+    return pool->round != seen_round || pool->closing;
+}
+
+/* Returns, with the lock, when there is a round that was not seen, or the pool closes. */
+static void wait_for_round(zt_pool *pool, unsigned seen_round) {
+    pthread_mutex_unlock(&pool->mutex);
+    double end_s = zt_clock_s() + look_s;
+    while (!has_come(pool, seen_round) && zt_clock_s() < end_s) sched_yield();
+    pthread_mutex_lock(&pool->mutex);
+    while (!has_come(pool, seen_round)) pthread_cond_wait(&pool->work_came, &pool->mutex);
+}
+
+/* The same when all workers have left the round. */
+static void wait_for_workers(zt_pool *pool) {
+    pthread_mutex_unlock(&pool->mutex);
+    double end_s = zt_clock_s() + look_s;
+    while (pool->busy_count > 0 && zt_clock_s() < end_s) sched_yield();
+    pthread_mutex_lock(&pool->mutex);
+    while (pool->busy_count > 0) pthread_cond_wait(&pool->work_done, &pool->mutex);
+}
+
 static void *worker_main(void *argument) {
     worker self = *(worker *)argument;
     free(argument);
@@ -62,10 +95,11 @@ static void *worker_main(void *argument) {
     unsigned seen_round = 0;
     pthread_mutex_lock(&pool->mutex);
     for (;;) {
-        while (pool->round == seen_round && !pool->closing)
-            pthread_cond_wait(&pool->work_came, &pool->mutex);
+        wait_for_round(pool, seen_round);
         if (pool->closing) break;
         seen_round = pool->round;
+        if (!pool->open) continue;
+        pool->busy_count++;
         pthread_mutex_unlock(&pool->mutex);
         take_tasks(pool, self.index);
         pthread_mutex_lock(&pool->mutex);
@@ -130,13 +164,14 @@ void zt_pool_run(zt_pool *pool, int task_count, void (*task)(void *user, int tas
     pool->user = user;
     pool->task_count = task_count;
     atomic_store_explicit(&pool->next_task, 0, memory_order_relaxed);
-    pool->busy_count = pool->thread_count - 1;
     pool->round++;
+    pool->open = true;
     pthread_cond_broadcast(&pool->work_came);
     pthread_mutex_unlock(&pool->mutex);
     take_tasks(pool, 0);
     pthread_mutex_lock(&pool->mutex);
-    while (pool->busy_count > 0) pthread_cond_wait(&pool->work_done, &pool->mutex);
+    pool->open = false;
+    if (pool->busy_count > 0) wait_for_workers(pool);
     pthread_mutex_unlock(&pool->mutex);
 }
 
