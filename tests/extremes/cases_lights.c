@@ -51,11 +51,27 @@ static void make_mirrors(stage *s, draw *d, double extreme) {
                   vec3_add(n, stage_within(d, .005)));
 }
 
+/* A coarse mesh with a ball's normals, from without: what is lit must look like a ball's. */
+static void make_terminator(stage *s, draw *d, double extreme) {
+    (void)extreme;
+    int32_t ball = stage_ball_mesh(s, 1, 4 + draw_below(d, 8), 5 + draw_below(d, 12), true);
+    zt_object *object = stage_mesh_object(s, ball, stage_within(d, 3));
+    object->smooth = true;
+    object->placement.rotation = draw_rotation(d);
+    for (int i = 0; i < 4; i++)
+        scene_point_light(&s->s,
+                          vec3_add(object->placement.position,
+                                   vec3_scale(stage_direction(d), draw_magnitude(d, 3, 1e3))),
+                          9);
+    stage_shoot(s, d, STAGE_FROM_ASIDE, draw_magnitude(d, 3, 30), s->ray_limit);
+}
+
 const extreme_case cases_lights[] = {
     {"lights at 1e-6", make_lights, 1e-6, 12, 64, 1, 0},
     {"lights at 1e9", make_lights, 1e9, 12, 64, 1, 0},
     {"lights on surfaces", make_lights, 0, 12, 64, 1, 0},
     {"lights inside", make_lights, -1, 12, 64, 1, 0},
+    {"smooth terminator", make_terminator, 0, 8, 128, 0, 0},
     {"mirrors 1000 deep", make_mirrors, 0, 8, 2, 1000, 0},
     {0},
 };

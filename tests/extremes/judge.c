@@ -9,8 +9,8 @@ static void worst(double *kept, real error) {
     if (!(e <= *kept) && !isnan(*kept)) *kept = e; /* no number stays */
 }
 
-static void count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
-                  ref_hit expected, const probe *a) {
+void judge_count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
+                 ref_hit expected, const probe *a) {
     if (++*counter > 3 || !j->verbose) return;
     printf("  %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
            "object %d part %d t %.17g, reference object %d part %d t %.17g\n",
@@ -50,25 +50,15 @@ static void judge_distance(const judge *j, const ref_ray *ray, real scale, ref_h
     worst(&j->tally->forward, error / expected.t / condition);
 }
 
-/* How far a normal is from that of the nearest faces, over how sensitive those are. Where they
- * bend more close by than at the point itself, `around` looks there. */
+/* How far a normal is from that of the faces at a point, over how sensitive those are. */
 static real normal_error(const judge *j, const ref_primitive *p, const probe *a, real scale,
-                         bool around) {
-    ref_face faces[REF_FACES_MAX], moved[REF_FACES_MAX];
-    real best = (real)INFINITY, step = j->tolerance * scale;
-    real3 point = real3_of(a->point), normal = real3_of(a->normal);
-    int face_count = ref_faces(faces, p, a->part, point);
-    for (int i = 0; around && i < 6; i++) {
-        real3 side = {i / 2 == 0, i / 2 == 1, i / 2 == 2};
-        ref_faces(moved, p, a->part, real3_along(point, i % 2 ? step : -step, side));
-        for (int k = 0; k < face_count; k++) {
-            faces[k].bend = real_max(faces[k].bend, moved[k].bend);
-            faces[k].twist = real_max(faces[k].twist, moved[k].twist);
-        }
-    }
-    for (int i = 0; i < face_count; i++) {
-        if (faces[i].distance > step) continue;
-        real3 n = faces[i].normal;
+                         real3 point) {
+    ref_face faces[REF_FACES_MAX];
+    real best = (real)INFINITY;
+    int count = ref_faces(faces, p, a->part, point);
+    for (int i = 0; i < count; i++) {
+        if (faces[i].distance > j->tolerance * scale) continue;
+        real3 n = faces[i].normal, normal = real3_of(a->normal);
         if (real3_dot(n, normal) < 0) n = real3_scale(n, -1);
         real error = real3_length(real3_sub(normal, n));
         best = real_min(best, error / (faces[i].twist + faces[i].bend * scale));
@@ -76,10 +66,14 @@ static real normal_error(const judge *j, const ref_primitive *p, const probe *a,
     return best;
 }
 
-static void judge_normal(const judge *j, const ref_primitive *p, real scale, const probe *a) {
-    if (j->ref->scene->objects[p->object].smooth) return;
-    real error = normal_error(j, p, a, scale, false);
-    if (error > j->tolerance) error = normal_error(j, p, a, scale, true);
+/* Where a face bends much within the tolerance, the normal may be that of the point that the
+ * tracer found, or that of the one that it ought to have found. */
+static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *ray, real scale,
+                         ref_hit expected, const probe *a) {
+    real error = normal_error(j, p, a, scale, real3_of(a->point));
+    if (error > j->tolerance && expected.object == a->object)
+        error = real_min(error,
+                         normal_error(j, p, a, scale, real3_along(ray->o, expected.t, ray->d)));
     worst(&j->tally->normal, error);
 }
 
@@ -90,55 +84,6 @@ static void judge_mirror(const judge *j, const ref_ray *ray, const probe *a) {
     worst(&j->tally->mirror, real3_length(off));
 }
 
-/* One light, from the very point that the tracer found. */
-static void judge_light(const judge *j, const ref_ray *ray, int light, bool reached, real scale,
-                        const probe *a) {
-    const ref_primitive *p = &j->ref->primitives[a->object];
-    real3 point = real3_of(a->point), way = real3_sub(j->ref->lights[light], point);
-    ref_face face = ref_nearest_face(p, a->part, point);
-    real side = real3_dot(face.normal, way);
-    if (real3_dot(face.normal, ray->d) > 0) side = -side;
-    ref_ray shadow = {point, way, a->object, a->part};
-    ref_hit hit = {-1, -1, 0}, blocker;
-    bool blocked = false, sure;
-    if (side > 0 && j->ref->scene->lights[light].shadows)
-        for (int32_t i = 0; i < j->ref->scene->object_count && !blocked; i++)
-            if ((blocked = ref_first(&blocker, &j->ref->primitives[i], &shadow, 0, 1)))
-                hit = blocker;
-    if ((side > 0 && !blocked) == reached) return;
-    real length = real3_length(way), turn = j->tolerance * (face.twist + face.bend * scale);
-    real doubt = j->tolerance * (scale + length) + turn * length;
-    /* Along the surface it is open which side the ray came from. */
-    bool along = real_abs(real3_dot(face.normal, real3_unit(ray->d))) <= turn + j->tolerance;
-    /* At a ridge the other side counts as well. */
-    ref_face faces[REF_FACES_MAX];
-    int face_count = ref_faces(faces, p, a->part, point), near = 0;
-    for (int i = 0; i < face_count; i++) near += faces[i].distance <= j->tolerance * scale;
-    if (along || real_abs(side) <= doubt || near > 1)
-        sure = false;
-    else if (side < 0)
-        sure = true;
-    else
-        ref_blocked(&sure, j->ref, &shadow, 1, j->tolerance, -1);
-    probe of_shadow = {.object = a->object, .part = reached};
-    if (!sure)
-        j->tally->ties++;
-    else if (reached)
-        count(j, &j->tally->leaks, "light through a surface", &shadow, hit, &of_shadow);
-    else
-        count(j, &j->tally->acne, "shadow of nothing", &shadow, hit, &of_shadow);
-}
-
-static void judge_lights(const judge *j, const ref_ray *ray, real scale, const probe *a) {
-    const zt_scene *scene = j->ref->scene;
-    int bit = 0;
-    for (int32_t i = 0; i < scene->light_count; i++) {
-        if (scene->lights[i].kind != ZT_LIGHT_POINT) continue;
-        judge_light(j, ray, i, (a->lights >> bit) & 1, scale, a);
-        bit++;
-    }
-}
-
 static void judge_missing(const judge *j, const ref_ray *ray, ref_hit expected,
                           const probe *a) {
     bool sure;
@@ -147,9 +92,9 @@ static void judge_missing(const judge *j, const ref_ray *ray, ref_hit expected,
     if (!sure)
         j->tally->ties++;
     else if (j->closed)
-        count(j, &j->tally->leaks, "leak", ray, expected, a);
+        judge_count(j, &j->tally->leaks, "leak", ray, expected, a);
     else
-        count(j, &j->tally->missed, "missed", ray, expected, a);
+        judge_count(j, &j->tally->missed, "missed", ray, expected, a);
 }
 
 /* Which surface: the nearest, or one that small changes make the nearest. */
@@ -157,9 +102,9 @@ static bool judge_surface(const judge *j, const ref_ray *ray, real scale, ref_hi
                           real error, const probe *a) {
     bool none = expected.object < 0, sure, blocked;
     if (error > j->tolerance || is_source(j, ray, a)) {
-        count(j, none ? &j->tally->false_hits : &j->tally->wrong,
-              error > j->tolerance ? "not where it says" : "left surface hit", ray, expected,
-              a);
+        judge_count(j, none ? &j->tally->false_hits : &j->tally->wrong,
+                    error > j->tolerance ? "not where it says" : "left surface hit", ray,
+                    expected, a);
         return false;
     }
     const ref_primitive *p = &j->ref->primitives[a->object];
@@ -171,13 +116,13 @@ static bool judge_surface(const judge *j, const ref_ray *ray, real scale, ref_hi
             return true;
         }
     } else if (j->strict && is_equal(p, ray, expected)) {
-        count(j, &j->tally->wrong, "not the first of equals", ray, expected, a);
+        judge_count(j, &j->tally->wrong, "not the first of equals", ray, expected, a);
         return false;
     }
     blocked = ref_blocked(&sure, j->ref, ray, a->t, j->tolerance, -1);
     if (blocked && sure) {
-        count(j, j->closed ? &j->tally->leaks : &j->tally->wrong, "not the nearest", ray,
-              expected, a);
+        judge_count(j, j->closed ? &j->tally->leaks : &j->tally->wrong, "not the nearest", ray,
+                    expected, a);
         return false;
     }
     j->tally->ties++;
@@ -194,7 +139,7 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
     t->hits++;
     if (!isfinite(a->t) || !finite3(a->point) || !finite3(a->normal) ||
         !finite3(a->next_direction)) {
-        count(j, &t->not_finite, "not finite", ray, expected, a);
+        judge_count(j, &t->not_finite, "not finite", ray, expected, a);
         return;
     }
     const ref_primitive *p = &j->ref->primitives[a->object];
@@ -205,11 +150,14 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
     error = real_max(error, real3_length(real3_sub(point, at)) / 2) / scale;
     worst(&t->hit, error);
     if (!(a->t > 0)) {
-        count(j, &t->false_hits, "behind the ray", ray, expected, a);
+        judge_count(j, &t->false_hits, "behind the ray", ray, expected, a);
         return;
     }
     if (!judge_surface(j, ray, scale, expected, error, a)) return;
-    judge_normal(j, p, scale, a);
+    if (j->ref->scene->objects[p->object].smooth)
+        judge_smooth(j, ray, a);
+    else
+        judge_normal(j, p, ray, scale, expected, a);
     judge_mirror(j, ray, a);
     if (j->lights) judge_lights(j, ray, scale, a);
 }

@@ -39,6 +39,14 @@ typedef struct judge {
 /* `expected` is the reference's answer for the ray. */
 void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const probe *answer);
 
+/* Parts of the above: each light, and the normal and the lights of a smooth mesh. */
+void judge_lights(const judge *j, const ref_ray *ray, real scale, const probe *answer);
+void judge_smooth(const judge *j, const ref_ray *ray, const probe *answer);
+
+/* Counts a mistake, and prints the first few of them where that is asked for. */
+void judge_count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
+                 ref_hit expected, const probe *answer);
+
 /* Whether all that must hold does. */
 bool tally_holds(const tally *t, double tolerance);
 void tally_add(tally *sum, const tally *t);

@@ -7,11 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "leaks.h"
 #include "table.h"
 
 typedef struct options {
     const char *only, *csv;
     int scenes;
+    int64_t rays;
     bool verbose, digest;
 } options;
 
@@ -28,16 +30,35 @@ static bool read_options(options *o, int count, char **words) {
             o->csv = words[++i];
         else if (strcmp(words[i], "--scenes") == 0 && next)
             o->scenes = atoi(words[++i]);
+        else if (strcmp(words[i], "--rays") == 0 && next)
+            o->rays = atoll(words[++i]);
         else
             return false;
     }
     return true;
 }
 
+/* One case; false where the tracer could not be opened. */
+static bool run(int *failures, FILE *csv, const extreme_case *c, const options *o) {
+    static run_result result;
+    bool is_leaks = c == &leaks_case;
+    if (o->only && strcmp(o->only, c->name) != 0) return true;
+    if (!(is_leaks
+              ? run_leaks(&result, o->rays, o->verbose)
+              : run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, o->verbose)))
+        return false;
+    if (!o->digest)
+        *failures += table_case(csv, c, &result);
+    else
+        for (int i = 0; i < PROBE_PRECISIONS; i++)
+            printf("%s %d %016llx\n", c->name, i, (unsigned long long)result.digest[i]);
+    return true;
+}
+
 int main(int count, char **words) {
-    options o = {0};
+    options o = {.rays = 200000};
     if (!read_options(&o, count, words)) {
-        fputs("usage: extremes [--case NAME] [--scenes N] [--csv FILE] [--verbose] "
+        fputs("usage: extremes [--case NAME] [--scenes N] [--rays N] [--csv FILE] [--verbose] "
               "[--digest]\n",
               stderr);
         return 2;
@@ -48,22 +69,14 @@ int main(int count, char **words) {
         return 3;
     }
     int failures = 0;
+    bool ok = true;
     if (!o.digest) table_begin(csv);
-    for (int list = 0; cases_all[list]; list++)
-        for (const extreme_case *c = cases_all[list]; c->name; c++) {
-            static run_result result;
-            if (o.only && strcmp(o.only, c->name) != 0) continue;
-            if (!run_case(&result, c, 0, o.scenes > 0 ? o.scenes : c->scenes, o.verbose)) {
-                fprintf(stderr, "%s: the tracer could not be opened\n", c->name);
-                return 3;
-            }
-            if (o.digest)
-                for (int i = 0; i < PROBE_PRECISIONS; i++)
-                    printf("%s %d %016llx\n", c->name, i, (unsigned long long)result.digest[i]);
-            else
-                failures += table_case(csv, c, &result);
-        }
-    if (csv && fclose(csv)) return 3;
+    for (int list = 0; cases_all[list] && ok; list++)
+        for (const extreme_case *c = cases_all[list]; c->name && ok; c++)
+            ok = run(&failures, csv, c, &o);
+    ok = ok && run(&failures, csv, &leaks_case, &o);
+    if (!ok) fputs("the tracer could not be opened\n", stderr);
+    if ((csv && fclose(csv)) || !ok) return 3;
     if (failures) printf("%d do not hold\n", failures);
     return failures ? 1 : 0;
 }

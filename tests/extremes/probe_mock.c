@@ -58,6 +58,11 @@ static void run(const probe_tracer *t, probe *p) {
     if (real3_dot(n, d) > 0) n = real3_scale(n, -1);
     if (probe_mock_lie == MOCK_TURNED) n = real3_unit(real3_add(n, (real3){1e-4, 0, 1e-4}));
     p->point = rounded3(t, point);
+    bool smooth = t->ref.scene->objects[hit.object].smooth;
+    if (smooth) { /* of a ball, as it should look */
+        vec3 center = t->ref.scene->objects[hit.object].placement.position;
+        n = real3_unit(real3_sub(point, real3_of(center)));
+    }
     p->normal = rounded3(t, n);
     p->next_origin = p->point;
     n = real3_of(p->normal);
@@ -69,8 +74,8 @@ static void run(const probe_tracer *t, probe *p) {
     for (int32_t i = 0; i < t->ref.scene->light_count; i++) {
         real3 way = real3_sub(t->ref.lights[i], point);
         ref_ray shadow = {point, way, hit.object, hit.part};
-        bool sure,
-            lit = real3_dot(way, n) > 0 && !ref_blocked(&sure, &t->ref, &shadow, 1, 0, -1);
+        bool sure, lit = real3_dot(way, n) > 0 &&
+                         (smooth || !ref_blocked(&sure, &t->ref, &shadow, 1, 0, -1));
         if (probe_mock_lie == MOCK_DARK) lit = false;
         if (probe_mock_lie == MOCK_LIT) lit = true;
         p->lights |= (uint32_t)lit << bit++;
