@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "leaks.h"
+#include "pictures.h"
 #include "table.h"
 
 typedef struct options {
@@ -41,12 +42,15 @@ static bool read_options(options *o, int count, char **words) {
 /* One case; false where the tracer could not be opened. */
 static bool run(int *failures, FILE *csv, const extreme_case *c, const options *o) {
     static run_result result;
-    bool is_leaks = c == &leaks_case;
+    bool ok;
     if (o->only && strcmp(o->only, c->name) != 0) return true;
-    if (!(is_leaks
-              ? run_leaks(&result, o->rays, o->verbose)
-              : run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, o->verbose)))
-        return false;
+    if (c == &leaks_case)
+        ok = run_leaks(&result, o->rays, o->verbose);
+    else if (c == &pictures_case)
+        ok = run_pictures(&result, o->scenes > 0 ? o->scenes : 1, o->verbose);
+    else
+        ok = run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, o->verbose);
+    if (!ok) return false;
     if (!o->digest)
         *failures += table_case(csv, c, &result);
     else
@@ -74,7 +78,7 @@ int main(int count, char **words) {
     for (int list = 0; cases_all[list] && ok; list++)
         for (const extreme_case *c = cases_all[list]; c->name && ok; c++)
             ok = run(&failures, csv, c, &o);
-    ok = ok && run(&failures, csv, &leaks_case, &o);
+    ok = ok && run(&failures, csv, &leaks_case, &o) && run(&failures, csv, &pictures_case, &o);
     if (!ok) fputs("the tracer could not be opened\n", stderr);
     if ((csv && fclose(csv)) || !ok) return 3;
     if (failures) printf("%d do not hold\n", failures);
