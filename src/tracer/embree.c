@@ -1,12 +1,15 @@
 /* Each hierarchy is an Embree scene of one geometry of the caller's own kind: boxes with a
  * callback.
  *
- * Embree sees all of it scaled by powers of two, which changes no digit: space so that the
- * largest coordinate is about 1, since Embree passes by what is beyond 1e18, and directions so
- * that their largest component is between 1 and 2, since it takes components below 1e-18 for
- * that. Its robust traversal allows for its own roundings, so that only this is left to be
- * allowed for here: such a component leads astray by up to 1e-18 for each unit of t, and a box
- * that is flat is no wider than that. GROWN is 1e6 times as much. */
+ * Such scenes Embree traverses without regard to roundings, whatever its flags say, so that
+ * these are allowed for here. It sees all of it scaled by powers of two, which changes no
+ * digit: space so that coordinates of boxes reach about 1 (it passes by what is beyond 1e18),
+ * directions so that their largest component is between 1 and 2. Origins further away are moved
+ * along their rays to about where these come near, so that all are within 4, or else the ray is
+ * of no concern. A distance t to a face at b from the origin o, worked out as b / d - o / d
+ * with a reciprocal that is off by 2^-22, is then off by what moving the face by (|b| + |o|)
+ * 2^-21.4 is at most, that is, less than GROWN. Components below 1e-18 are taken for that,
+ * which over the little way that is left is less still. */
 #include "tracer/embree.h"
 
 #include <embree3/rtcore.h>
@@ -21,9 +24,9 @@
 
 enum { LANES = ZT_BVH_LANES };
 
-#define GROWN   0x1p-40f /* by how much boxes are grown, of the largest coordinate */
-#define WIDENED 0x1p-23f /* and of each coordinate */
-#define FURTHER (1 + 0x1p-20f)
+#define GROWN   0x1p-18f /* by how much boxes are grown, of their largest coordinate */
+#define BEFORE  2        /* that coordinate's reach in any direction, and some more */
+#define FURTHER (1 + 0x1p-20)
 
 struct zt_embree {
     RTCDevice device;
@@ -45,7 +48,8 @@ typedef struct look {
     zt_bvh_visit *visit;
     void *user;
     int first;
-    alignas(64) float stretch[LANES]; /* from a ray's far to Embree's */
+    /* From a ray's far to Embree's: times `stretch` less `moved`. */
+    alignas(64) double stretch[LANES], moved[LANES];
 } look;
 
 static void tell_device_error(void *user, enum RTCError code, const char *text) {
@@ -92,14 +96,12 @@ static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
     const hierarchy *h = arguments->geometryUserPtr;
     const zt_bvh_box *box = &h->boxes[arguments->primID];
     float low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = box->low[i] * h->scale;
-        high[i] = box->high[i] * h->scale;
-        low[i] -= fabsf(low[i]) * WIDENED + GROWN;
-        high[i] += fabsf(high[i]) * WIDENED + GROWN;
-    }
     bool empty = false;
-    for (int i = 0; i < 3; i++) empty |= !(box->low[i] <= box->high[i]);
+    for (int i = 0; i < 3; i++) {
+        low[i] = box->low[i] * h->scale - GROWN;
+        high[i] = box->high[i] * h->scale + GROWN;
+        empty |= !(box->low[i] <= box->high[i]);
+    }
     *arguments->bounds_o = (struct RTCBounds){.lower_x = empty ? INFINITY : low[0],
                                               .lower_y = low[1],
                                               .lower_z = low[2],
@@ -110,14 +112,17 @@ static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
 
 ZT_CLONES static void visit_box(const struct RTCIntersectFunctionNArguments *arguments) {
     const look *l = (const look *)arguments->context;
+    const float *far = l->rays->far + l->first;
     uint32_t lanes = 0;
     for (int lane = 0; lane < LANES; lane++)
-        lanes |= (uint32_t)(arguments->valid[lane] & 1) << lane;
+        lanes |= (uint32_t)(arguments->valid[lane] & (far[lane] > 0)) << lane;
+    if (!lanes) return;
     l->visit(l->user, (int32_t)arguments->primID, l->first, lanes);
     struct RTCRayHit16 *packet = (struct RTCRayHit16 *)arguments->rayhit;
-    const float *far = l->rays->far + l->first;
     for (int lane = 0; lane < LANES; lane++)
-        packet->ray.tfar[lane] = far[lane] < 0 ? -INFINITY : far[lane] * l->stretch[lane];
+        packet->ray.tfar[lane] =
+            far[lane] > 0 ? (float)((double)far[lane] * l->stretch[lane] - l->moved[lane])
+                          : -INFINITY;
 }
 
 static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_life life) {
@@ -132,8 +137,7 @@ static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_lif
         return ZT_EMEMORY;
     }
     bool lasting = life == ZT_BVH_LASTING;
-    rtcSetSceneFlags(h->scene, lasting ? RTC_SCENE_FLAG_ROBUST
-                                       : RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+    if (!lasting) rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(h->scene,
                             lasting ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserData(h->geometry, h);
@@ -185,30 +189,36 @@ static inline void exponent_of(float *power, float *inverse, float a) {
 
 static inline float larger(float a, float b) { return a > b ? a : b; }
 
-/* Fills a packet with rays from `first` on. Returns whether any of them looks anywhere. */
+/* Fills a packet with rays from l->first on. Returns whether any of them looks anywhere. */
 ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restrict valid,
-                                  float *restrict stretches, const zt_bvh_rays *restrict rays,
-                                  int first, float scale) {
-    int any = 0, count = rays->count - first;
+                                  look *restrict l, const zt_bvh_rays *restrict rays,
+                                  float scale) {
+    int any = 0, first = l->first, count = rays->count - first;
     WIDE_LOOP
     for (int lane = 0; lane < LANES; lane++) {
         int i = first + lane;
         float dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
         float length, shrink;
         exponent_of(&length, &shrink, larger(larger(fabsf(dx), fabsf(dy)), fabsf(dz)));
-        float stretch = length * (scale * FURTHER);
-        float ox = rays->ox[i] * scale, oy = rays->oy[i] * scale, oz = rays->oz[i] * scale;
-        float far = rays->far[i] * stretch;
-        packet->org_x[lane] = ox;
-        packet->org_y[lane] = oy;
-        packet->org_z[lane] = oz;
+        double far = (double)rays->far[i], stretch = (double)length * (double)scale * FURTHER;
+        double ox = (double)(rays->ox[i] * scale), wx = (double)(dx * shrink);
+        double oy = (double)(rays->oy[i] * scale), wy = (double)(dy * shrink);
+        double oz = (double)(rays->oz[i] * scale), wz = (double)(dz * shrink);
+        double nearest = -(ox * wx + oy * wy + oz * wz) / (wx * wx + wy * wy + wz * wz);
+        double moved = nearest > BEFORE ? nearest - BEFORE : 0;
+        packet->org_x[lane] = (float)(ox + moved * wx);
+        packet->org_y[lane] = (float)(oy + moved * wy);
+        packet->org_z[lane] = (float)(oz + moved * wz);
         packet->dir_x[lane] = dx * shrink;
         packet->dir_y[lane] = dy * shrink;
         packet->dir_z[lane] = dz * shrink;
-        packet->tfar[lane] = far;
-        stretches[lane] = stretch;
-        float zero = (ox + oy + oz + (dx + dy + dz) * shrink) * 0; /* NaN: not finite */
-        int looks = -((lane < count) & (far > 0) & (zero == 0) & (length > 0) & (shrink > 0));
+        float left = (float)(far * stretch - moved);
+        packet->tfar[lane] = left;
+        l->stretch[lane] = stretch;
+        l->moved[lane] = moved;
+        double zero = (ox + oy + oz + wx + wy + wz) * 0; /* NaN where one is not finite */
+        int looks = -((lane < count) & (far > 0) & (left > 0) & (zero == 0) & (length > 0) &
+                      (shrink > 0));
         valid[lane] = looks;
         any |= looks;
     }
@@ -226,7 +236,7 @@ static void embree_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind,
     memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID);
     for (; l.first < rays->count; l.first += LANES) {
         alignas(64) int valid[LANES];
-        if (load_packet(&packet.ray, valid, l.stretch, rays, l.first, h->scale))
+        if (load_packet(&packet.ray, valid, &l, rays, h->scale))
             rtcIntersect16(valid, h->scene, &l.context, &packet);
     }
 }
