@@ -17,6 +17,8 @@
 static const vec3 white = {1, 1, 1};
 
 /* Renders a scene to an image that the caller frees; *left_out samples were not finite. */
+static zt_precision precision = ZT_PRECISION_AUTO;
+
 static zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, int width,
                                     int height, int samples, int threads) {
     zt_arena arena = {0};
@@ -24,14 +26,17 @@ static zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, in
     zt_pool *pool;
     zt_render_work *work;
     zt_image *image;
-    zt_tracer tracer;
+    zt_ready ready;
     assert_int_equal(
-        zt_meshes_open(&meshes, scene->meshes, scene->mesh_count, (zt_listener){0}), ZT_OK);
+        zt_meshes_open(&meshes, scene->meshes, scene->mesh_count, threads, (zt_listener){0}),
+        ZT_OK);
     assert_int_equal(zt_pool_open(&pool, threads), ZT_OK);
     assert_int_equal(zt_render_work_push(&work, &arena, threads), ZT_OK);
     assert_int_equal(zt_image_create(&image, width, height), ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&tracer, scene, meshes, &arena), ZT_OK);
-    zt_render_job job = {.tracer = &tracer,
+    assert_int_equal(zt_tracer_prepare(&ready, scene, precision,
+                                       zt_lens_pixel(&scene->camera, height), meshes, &arena),
+                     ZT_OK);
+    zt_render_job job = {.scene = &ready,
                          .lens = zt_lens_prepare(&scene->camera, width, height),
                          .samples = samples};
     assert_int_equal(zt_render(image, left_out, &job, work, pool), ZT_OK);
@@ -212,26 +217,25 @@ static void test_threads(void **state) {
     }
 }
 
-/* All widths of instructions give the same bits. */
+/* All widths of instructions give the same bits, in either precision. */
 static void test_isa(void **state) {
     (void)state;
     test_scene s;
     make_room(&s);
-    setenv("ZOETROPE_ISA", "base", 1);
-    zt_classic_trace *base = zt_classic_select(), *widest;
-    zt_image *wanted = render(&s.scene, 160, 120, 2, 2);
-    const char *const names[] = {"avx2", "avx512"};
-    for (int i = 0; i < 2; i++) {
-        setenv("ZOETROPE_ISA", names[i], 1);
-        if (zt_classic_select() == base) printf("%s: not here, skipped\n", names[i]);
-        zt_image *got = render(&s.scene, 160, 120, 2, 2);
-        assert_same_bits(wanted, got);
-        zt_image_free(&got);
+    for (precision = ZT_PRECISION_SINGLE; precision <= ZT_PRECISION_DOUBLE; precision++) {
+        setenv("ZOETROPE_ISA", "scalar", 1);
+        zt_image *wanted = render(&s.scene, 160, 120, 2, 2);
+        const char *const names[] = {"base", "avx2", "avx512"};
+        for (int i = 0; i < 3; i++) {
+            setenv("ZOETROPE_ISA", names[i], 1);
+            zt_image *got = render(&s.scene, 160, 120, 2, 2);
+            assert_same_bits(wanted, got);
+            zt_image_free(&got);
+        }
+        zt_image_free(&wanted);
     }
+    precision = ZT_PRECISION_AUTO;
     unsetenv("ZOETROPE_ISA");
-    widest = zt_classic_select();
-    assert_non_null(widest);
-    zt_image_free(&wanted);
 }
 
 /* Convex things cast no shadow on the side that is lit: shadows on or off, the same bits. Any

@@ -5,6 +5,7 @@
 #include <zoetrope/animation.h>
 #include <zoetrope/image.h>
 #include <zoetrope/output.h>
+#include <zoetrope/precision.h>
 #include <zoetrope/status.h>
 
 #ifdef __cplusplus
@@ -18,6 +19,7 @@ typedef struct zt_render_settings {
     int width, height; /* pixels; both or neither */
     int samples;       /* a pixel */
     int threads;       /* one a core by default; the images do not depend on it */
+    zt_precision precision;
 } zt_render_settings;
 
 /* Is told after each frame of a sequence, and asked often, from any thread, whether to stop. */

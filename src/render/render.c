@@ -11,15 +11,14 @@ enum { TILE_SIDE = 16 };
 static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
 
 struct zt_render_work {
-    zt_classic_trace *trace;
     int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each ray's pixel within a tile */
     struct render_thread {
         int32_t column[ZT_BATCH], row[ZT_BATCH]; /* the pixel of each ray */
         float x[ZT_BATCH], y[ZT_BATCH];          /* its place in the picture, pixels */
-        zt_batch rays;
+        zt_rays rays;
         zt_radiance light, sum;
         int32_t taken[ZT_BATCH]; /* samples in the sum */
-        zt_classic_work classic;
+        void *kernel; /* what it works with */
     } * threads;
 };
 
@@ -54,11 +53,15 @@ static void order_pixels(zt_render_work *work) {
 zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_count) {
     zt_render_work *work = ZT_PUSH(arena, zt_render_work, 1);
     if (!work) return ZT_EMEMORY;
-    work->trace = zt_classic_select();
     order_pixels(work);
     work->threads = ZT_PUSH(arena, struct render_thread, (size_t)thread_count);
+    if (!work->threads) return ZT_EMEMORY;
+    for (int i = 0; i < thread_count; i++) {
+        work->threads[i].kernel = zt_arena_push(arena, zt_kernel_work_size());
+        if (!work->threads[i].kernel) return ZT_EMEMORY;
+    }
     *out = work;
-    return work->threads ? ZT_OK : ZT_EMEMORY;
+    return ZT_OK;
 }
 
 /* Lists the pixels of a tile; those beyond the edge of the picture are left out. */
@@ -85,7 +88,7 @@ static int add_samples(struct render_thread *own, int count) {
     const zt_radiance *light = &own->light;
     int left_out = 0;
     for (int i = 0; i < count; i++) {
-        real r = light->r[i], g = light->g[i], b = light->b[i];
+        float r = light->r[i], g = light->g[i], b = light->b[i];
         /* Infinities and NaN, alone of all numbers, are not 0 when taken from themselves. */
         bool finite = (r - r) + (g - g) + (b - b) == 0;
         own->sum.r[i] += finite ? r : 0;
@@ -100,7 +103,7 @@ static int add_samples(struct render_thread *own, int count) {
 static void fill_pixels(zt_image *image, struct render_thread *own, int count) {
     zt_radiance *sum = &own->sum;
     for (int i = 0; i < count; i++) {
-        real share = own->taken[i] ? 1 / (real)own->taken[i] : 0;
+        float share = own->taken[i] ? 1 / (float)own->taken[i] : 0;
         sum->r[i] *= share;
         sum->g[i] *= share;
         sum->b[i] *= share;
@@ -130,7 +133,7 @@ static void render_tile(void *user, int index, int worker) {
         }
         zt_sample_pixels(own->x, own->y, own->column, own->row, count, sample, job->samples);
         zt_lens_rays(&own->rays, &job->lens, own->x, own->y, count);
-        f->work->trace(&own->light, job->tracer, &own->rays, &own->classic);
+        job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
         left_out += add_samples(own, count);
     }
     fill_pixels(f->image, own, count);

@@ -10,15 +10,14 @@
 #include "base/arena.h"
 #include "base/pool.h"
 #include "render/lens.h"
-#include "tracer/classic.h"
-#include "tracer/tracer.h"
+#include "tracer/kernel.h"
 
 /* What each thread works with; made once in a run. */
 typedef struct zt_render_work zt_render_work;
 zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread_count);
 
 typedef struct zt_render_job {
-    const zt_tracer *tracer;
+    const zt_ready *scene;
     zt_lens lens;
     int samples;                 /* a pixel, at least 1 */
     bool (*stopped)(void *user); /* asked before each tile, from any thread; may be NULL */

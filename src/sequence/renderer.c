@@ -21,7 +21,7 @@ static zt_status check_settings(const zt_render_settings *s) {
 static zt_status open_parts(zt_renderer *r, int thread_count) {
     const zt_scene *rest = &r->animation->rest;
     ZT_TRY(zt_pool_open(&r->pool, thread_count));
-    ZT_TRY(zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, r->listener));
+    ZT_TRY(zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, thread_count, r->listener));
     return zt_render_work_push(&r->work, &r->run, thread_count);
 }
 
@@ -34,6 +34,7 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     const zt_film *film = &animation->film;
     r->animation = animation;
     r->listener = listener;
+    r->precision = settings->precision;
     r->samples = settings->samples ? settings->samples : film->samples;
     r->format = (zt_output_format){settings->width ? settings->width : film->width,
                                    settings->height ? settings->height : film->height,
@@ -64,12 +65,14 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
         return ZT_EARGUMENT;
     zt_arena_reset(&r->frame);
     zt_scene scene;
-    zt_tracer tracer;
+    zt_ready ready;
     int64_t left_out_count;
     ZT_TRY(zt_animation_freeze(&scene, r->animation, zt_rate_time(r->format.rate, frame),
                                &r->frame, r->listener));
-    ZT_TRY(zt_tracer_prepare(&tracer, &scene, r->meshes, &r->frame));
-    zt_render_job job = {.tracer = &tracer,
+    ZT_TRY(zt_tracer_prepare(&ready, &scene, r->precision,
+                             zt_lens_pixel(&scene.camera, image->height), r->meshes,
+                             &r->frame));
+    zt_render_job job = {.scene = &ready,
                          .lens = zt_lens_prepare(&scene.camera, image->width, image->height),
                          .samples = r->samples,
                          .stopped = watcher ? watcher->stopped : NULL,

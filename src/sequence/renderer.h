@@ -13,6 +13,7 @@ struct zt_renderer {
     const zt_animation *animation;
     zt_output_format format;
     int samples;
+    zt_precision precision;
     zt_listener listener;
     zt_pool *pool;
     zt_meshes *meshes;

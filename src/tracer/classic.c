@@ -1,25 +1,49 @@
-/* The classic integrator. A step of its loop: intersect the batch, gather what it hit, light
- * it, mirror it, again. Compiled once for each width of instructions (tracer/isa.h). */
+/* The classic integrator. A step of its loop: intersect the batch, find what it hit, light it,
+ * mirror it, again. Compiled once for each width of instructions and each precision
+ * (tracer/isa.h). */
 #include "tracer/classic.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "tracer/intersect.h"
-#include "tracer/isa.h"
+#include "tracer/points.h"
 
-#define intersect ZT_ISA_NAME(zt_intersect)
-#define occlude   ZT_ISA_NAME(zt_occlude)
+#define intersect   ZT_KERNEL_NAME(zt_intersect)
+#define occlude     ZT_KERNEL_NAME(zt_occlude)
+#define may_meet    ZT_KERNEL_NAME(zt_may_meet)
+#define find_points ZT_KERNEL_NAME(zt_points_find)
 
-/* A point is projected onto its surface, which leaves a few roundings of the largest number in
- * the arithmetic between the two; the next ray's own intersection adds about as many again.
- * Twice what they sum up to (16) is a bound that holds for planes, spheres and triangles. */
-#define MARGIN_ROUNDINGS 32
-
-zt_classic_trace ZT_ISA_NAME(zt_classic_trace);
+/* What one thread works with; its contents mean nothing between calls. */
+typedef struct work {
+    zt_origins from; /* of the rays, and then of the shadow rays as well */
+    zt_batch rays, shadow;
+    zt_points points;
+    /* Light at the points: of all lamps so far, and of one lamp. */
+    alignas(64) real sum_r[ZT_BATCH];
+    alignas(64) real sum_g[ZT_BATCH];
+    alignas(64) real sum_b[ZT_BATCH];
+    alignas(64) real lamp_r[ZT_BATCH];
+    alignas(64) real lamp_g[ZT_BATCH];
+    alignas(64) real lamp_b[ZT_BATCH];
+    alignas(64) int32_t wanted[ZT_BATCH]; /* which of the rays or points go on */
+    alignas(64) int32_t list[ZT_BATCH];   /* the numbers of those */
+} work;
 
 /* Loops run over whole groups of lanes: what lies beyond the count is computed and never used,
  * but must be safe to compute. */
+
+static bool all_wanted(const work *w, int count) {
+    int32_t all = 1;
+    for (int i = 0; i < count; i++) all &= w->wanted[i];
+    return all;
+}
+
+static bool any_wanted(const work *w, int count) {
+    int32_t any = 0;
+    for (int i = 0; i < count; i++) any |= w->wanted[i];
+    return any;
+}
 
 /* Compacts, of `count` numbers 0, 1, …, those that are wanted; the rest of the last group of
  * lanes repeats the first. */
@@ -33,146 +57,55 @@ static int list_wanted(int32_t *restrict list, const int32_t *restrict wanted, i
     return listed;
 }
 
-static inline void gather_hit(zt_classic_work *restrict w, int k, const zt_batch *restrict rays,
-                              int i) {
-    real t = rays->t[i], dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-    int32_t hit = rays->hit[i];
-    w->primitive[k] = hit > 0 ? hit : 0;
-    w->part[k] = rays->part[i];
-    w->dx[k] = dx;
-    w->dy[k] = dy;
-    w->dz[k] = dz;
-    w->px[k] = rays->ox[i] + t * dx;
-    w->py[k] = rays->oy[i] + t * dy;
-    w->pz[k] = rays->oz[i] + t * dz;
+/* Makes the batch the first rays, with unit directions. */
+static void begin(work *restrict w, const zt_rays *restrict given) {
+    zt_batch *restrict rays = &w->rays;
+    zt_origins *restrict from = &w->from;
+    w->rays.from = w->shadow.from = &w->from;
+    rays->count = given->count;
+    int padded = zt_batch_padded(given->count);
+    WIDE_LOOP for (int i = 0; i < padded; i++) {
+        real x = (real)given->ox[i], y = (real)given->oy[i], z = (real)given->oz[i];
+        real dx = (real)given->dx[i], dy = (real)given->dy[i], dz = (real)given->dz[i];
+        real unit = 1 / real_sqrt(real_dot(dx, dy, dz, dx, dy, dz));
+        from->x[i] = x;
+        from->y[i] = y;
+        from->z[i] = z;
+        from->near[i] = real_max(real_max(real_abs(x), real_abs(y)), real_abs(z)) * TIE;
+        from->source[i] = -1;
+        rays->dx[i] = dx * unit;
+        rays->dy[i] = dy * unit;
+        rays->dz[i] = dz * unit;
+        w->points.pixel[i] = i;
+        w->points.weight[i] = 1;
+    }
 }
 
-/* Gathers the rays that hit something into the points. `pixel` and `weight` of the work belong
- * to the rays before, to the points after. */
-static void gather_hits(zt_classic_work *restrict w, const zt_batch *restrict rays) {
-    int padded = zt_batch_padded(rays->count), missed = 0;
+/* Lets go of the rays that hit nothing. */
+static void keep_hits(work *restrict w) {
+    zt_batch *restrict rays = &w->rays;
+    zt_origins *restrict from = &w->from;
+    zt_points *restrict p = &w->points;
+    int count = rays->count, padded = zt_batch_padded(count);
     WIDE_LOOP for (int i = 0; i < padded; i++) w->wanted[i] = rays->hit[i] >= 0;
-    for (int i = 0; i < rays->count; i++) missed |= !w->wanted[i];
-    w->count = rays->count;
-    if (!missed) {
-        WIDE_LOOP for (int i = 0; i < padded; i++) gather_hit(w, i, rays, i);
-        return;
-    }
-    w->count = list_wanted(w->list, w->wanted, rays->count);
-    for (int k = 0; k < w->count; k++) {
-        int i = w->list[k]; /* i >= k, so compacting in place overwrites nothing still wanted */
-        w->pixel[k] = w->pixel[i];
-        w->weight[k] = w->weight[i];
-    }
-    padded = zt_batch_padded(w->count);
-    WIDE_LOOP for (int k = 0; k < padded; k++) gather_hit(w, k, rays, w->list[k]);
-}
-
-/* The normal and the corrected position of point k, of a kind of which a zt_surface says all. A
- * row of zeros leaves the position as it is. */
-static inline void find_surface(zt_classic_work *restrict w, int k, const zt_surface *s) {
-    real qx = w->px[k] - s->center.x, qy = w->py[k] - s->center.y, qz = w->pz[k] - s->center.z;
-    real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
-         nz = s->normal.z + s->bend * qz;
-    real unit = 1 / sqrtf(real_max(real_dot(nx, ny, nz, nx, ny, nz), 1e-30f));
-    nx *= unit;
-    ny *= unit;
-    nz *= unit;
-    real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
-    w->px[k] -= off * nx;
-    w->py[k] -= off * ny;
-    w->pz[k] -= off * nz;
-    w->nx[k] = nx;
-    w->ny[k] = ny;
-    w->nz[k] = nz;
-    w->margin[k] = s->extent;
-    w->color_r[k] = s->color.x;
-    w->color_g[k] = s->color.y;
-    w->color_b[k] = s->color.z;
-    w->reflectivity[k] = s->reflectivity;
-}
-
-/* All points; where they lie on one primitive, as most of a tile's do, nothing is gathered. */
-static void find_surfaces(zt_classic_work *restrict w, const zt_tracer *tracer) {
-    int32_t first = w->primitive[0], others = 0;
-    int padded = zt_batch_padded(w->count);
-    for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
-    if (others) {
-        WIDE_LOOP for (int k = 0; k < padded; k++)
-            find_surface(w, k, &tracer->surfaces[w->primitive[k]]);
-    } else if (w->count > 0) {
-        const zt_surface only = tracer->surfaces[first];
-        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, k, &only);
-    }
-}
-
-/* The same for an ellipsoid: with f(p) = |M (p - c)|^2 - 1 the normal is along the gradient g
- * of f / 2, and f / (2 |g|) is the distance to first order. */
-static void find_ellipsoid(zt_classic_work *w, int k, const zt_primitive *p) {
-    const real3 *m = p->ellipsoid.to_unit;
-    double q[3] = {(double)w->px[k] - (double)p->ellipsoid.center.x,
-                   (double)w->py[k] - (double)p->ellipsoid.center.y,
-                   (double)w->pz[k] - (double)p->ellipsoid.center.z};
-    double g[3] = {0, 0, 0}, f = -1;
-    for (int i = 0; i < 3; i++) {
-        double e = (double)m[i].x * q[0] + (double)m[i].y * q[1] + (double)m[i].z * q[2];
-        f += e * e;
-        g[0] += e * (double)m[i].x;
-        g[1] += e * (double)m[i].y;
-        g[2] += e * (double)m[i].z;
-    }
-    double length2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2], unit = 1 / sqrt(length2);
-    double step = f / (2 * length2);
-    w->px[k] = (real)((double)w->px[k] - step * g[0]);
-    w->py[k] = (real)((double)w->py[k] - step * g[1]);
-    w->pz[k] = (real)((double)w->pz[k] - step * g[2]);
-    w->nx[k] = (real)(g[0] * unit);
-    w->ny[k] = (real)(g[1] * unit);
-    w->nz[k] = (real)(g[2] * unit);
-}
-
-/* The same for a triangle of a mesh. */
-static void find_mesh(zt_classic_work *w, int k, const zt_meshes *meshes) {
-    real3 normal, corner;
-    real extent;
-    zt_meshes_surface(&normal, &corner, &extent, meshes, w->primitive[k], w->part[k]);
-    real off = real_dot(normal.x, normal.y, normal.z, w->px[k] - corner.x, w->py[k] - corner.y,
-                        w->pz[k] - corner.z);
-    w->px[k] -= off * normal.x;
-    w->py[k] -= off * normal.y;
-    w->pz[k] -= off * normal.z;
-    w->nx[k] = normal.x;
-    w->ny[k] = normal.y;
-    w->nz[k] = normal.z;
-    w->margin[k] = extent;
-}
-
-/* Points of the kinds that need more than a zt_surface. */
-static void find_other_surfaces(zt_classic_work *w, const zt_tracer *tracer) {
-    for (int k = 0; k < w->count; k++) {
-        const zt_primitive *p = &tracer->primitives[w->primitive[k]];
-        if (p->kind == ZT_PRIMITIVE_MESH)
-            find_mesh(w, k, tracer->meshes);
-        else if (p->kind == ZT_PRIMITIVE_ELLIPSOID)
-            find_ellipsoid(w, k, p);
-    }
-}
-
-/* Turns the normals to the side that the rays came from, makes the margin a length, and begins
- * the sum of light with the ambient. */
-static void face_rays(zt_classic_work *restrict w, real3 ambient) {
-    int padded = zt_batch_padded(w->count);
+    if (all_wanted(w, count)) return;
+    rays->count = list_wanted(w->list, w->wanted, count);
+    padded = zt_batch_padded(rays->count);
+    /* Numbers in the list are no less than their places, so that moving down overwrites nothing
+     * that is still wanted. */
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
-        bool away = real_dot(nx, ny, nz, w->dx[k], w->dy[k], w->dz[k]) > 0;
-        w->nx[k] = away ? -nx : nx;
-        w->ny[k] = away ? -ny : ny;
-        w->nz[k] = away ? -nz : nz;
-        real coordinate = real_max(real_max(fabsf(w->px[k]), fabsf(w->py[k])), fabsf(w->pz[k]));
-        w->margin[k] = (coordinate + w->margin[k]) * (MARGIN_ROUNDINGS * REAL_ROUNDING);
-        w->sum_r[k] = ambient.x * w->color_r[k];
-        w->sum_g[k] = ambient.y * w->color_g[k];
-        w->sum_b[k] = ambient.z * w->color_b[k];
+        int32_t i = w->list[k];
+        from->x[k] = from->x[i];
+        from->y[k] = from->y[i];
+        from->z[k] = from->z[i];
+        rays->dx[k] = rays->dx[i];
+        rays->dy[k] = rays->dy[i];
+        rays->dz[k] = rays->dz[i];
+        rays->t[k] = rays->t[i];
+        rays->hit[k] = rays->hit[i];
+        rays->part[k] = rays->part[i];
+        p->pixel[k] = p->pixel[i];
+        p->weight[k] = p->weight[i];
     }
 }
 
@@ -182,129 +115,232 @@ static real cut(real x) {
     return low < 1 ? low : 1;
 }
 
-/* What a lamp gives each point where nothing is in between; false where it gives nothing to
- * any. */
-static bool shine(zt_classic_work *restrict w, const zt_lamp *lamp) {
+/* What a lamp gives each point where nothing is in between, and, where `hidden` is to be found
+ * out, the shadow rays of those that it gives any; others look no distance, and meet nothing.
+ * False where it gives nothing to any. */
+static inline bool shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
+    const zt_origins *restrict from = &w->from;
+    const zt_points *restrict p = &w->points;
+    zt_batch *restrict shadow = &w->shadow;
     const real3 at = lamp->position, power = lamp->power;
-    int padded = zt_batch_padded(w->count);
+    int padded = zt_batch_padded(p->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        real vx = at.x - w->px[k], vy = at.y - w->py[k], vz = at.z - w->pz[k];
-        real toward = real_dot(w->nx[k], w->ny[k], w->nz[k], vx, vy, vz);
-        real near = 1 / sqrtf(real_dot(vx, vy, vz, vx, vy, vz)); /* one over the distance */
+        real vx = at.x - from->x[k], vy = at.y - from->y[k], vz = at.z - from->z[k];
+        real toward = real_dot(p->nx[k], p->ny[k], p->nz[k], vx, vy, vz);
+        real distance = real_sqrt(real_dot(vx, vy, vz, vx, vy, vz)), near = 1 / distance;
         real fade = toward * near * near * near;
         fade = toward > 0 ? fade : 0;
-        real r = cut(power.x * fade * w->color_r[k]);
-        real g = cut(power.y * fade * w->color_g[k]);
-        real b = cut(power.z * fade * w->color_b[k]);
+        real r = cut(power.x * fade * p->color_r[k]);
+        real g = cut(power.y * fade * p->color_g[k]);
+        real b = cut(power.z * fade * p->color_b[k]);
+        bool wanted = r + g + b > 0;
         w->lamp_r[k] = r;
         w->lamp_g[k] = g;
         w->lamp_b[k] = b;
-        w->wanted[k] = r + g + b > 0;
+        w->wanted[k] = wanted;
+        if (hidden) {
+            shadow->dx[k] = vx * near;
+            shadow->dy[k] = vy * near;
+            shadow->dz[k] = vz * near;
+            shadow->t[k] = wanted ? distance : 0;
+            shadow->hit[k] = -1;
+        }
     }
-    int32_t any = 0;
-    for (int k = 0; k < w->count; k++) any |= w->wanted[k];
-    return any;
+    shadow->count = p->count;
+    return any_wanted(w, p->count);
 }
 
-/* Makes the shadow rays of all points: those that get no light look no distance, and meet
- * nothing. */
-static void aim_at_lamp(zt_classic_work *restrict w, const zt_lamp *lamp) {
-    zt_batch *restrict shadow = &w->shadow;
-    const real3 at = lamp->position;
-    int padded = zt_batch_padded(w->count);
+/* Adds a lamp's light, where `hidden` is known only what nothing hides. */
+static inline void add_lamp(work *restrict w, bool hidden) {
+    int padded = zt_batch_padded(w->points.count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        real ox = w->px[k] + w->margin[k] * w->nx[k], oy = w->py[k] + w->margin[k] * w->ny[k],
-             oz = w->pz[k] + w->margin[k] * w->nz[k];
-        real vx = at.x - ox, vy = at.y - oy, vz = at.z - oz;
-        real distance = sqrtf(real_dot(vx, vy, vz, vx, vy, vz)), near = 1 / distance;
-        shadow->ox[k] = ox;
-        shadow->oy[k] = oy;
-        shadow->oz[k] = oz;
-        shadow->dx[k] = vx * near;
-        shadow->dy[k] = vy * near;
-        shadow->dz[k] = vz * near;
-        shadow->t[k] = w->wanted[k] ? distance : 0;
-        shadow->hit[k] = -1;
-    }
-    shadow->count = w->count;
-}
-
-/* Adds a lamp's light where nothing hides it. */
-static void add_lamp(zt_classic_work *restrict w) {
-    int padded = zt_batch_padded(w->count);
-    WIDE_LOOP for (int k = 0; k < padded; k++) {
-        bool open = w->shadow.hit[k] < 0;
+        bool open = !hidden || w->shadow.hit[k] < 0;
         w->sum_r[k] += open ? w->lamp_r[k] : 0;
         w->sum_g[k] += open ? w->lamp_g[k] : 0;
         w->sum_b[k] += open ? w->lamp_b[k] : 0;
     }
 }
 
-static void deliver(zt_radiance *restrict light, const zt_classic_work *restrict w) {
-    for (int k = 0; k < w->count; k++) {
-        int i = w->pixel[k];
-        light->r[i] += w->weight[k] * w->sum_r[k];
-        light->g[i] += w->weight[k] * w->sum_g[k];
-        light->b[i] += w->weight[k] * w->sum_b[k];
+/* Whether lamp light has to look for what is in its way; then the shadow rays are traced. */
+static bool shine_through(work *w, const zt_tracer *tracer, const zt_lamp *lamp,
+                          const zt_box *around) {
+    zt_bundle bundle = zt_bundle_to(*around, lamp->position, w->points.source);
+    bool hidden = lamp->shadows && may_meet(&bundle, tracer);
+    if (!hidden)
+        shine(w, lamp, false);
+    else if (shine(w, lamp, true))
+        occlude(&w->shadow, &bundle, tracer);
+    return hidden;
+}
+
+static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box *around) {
+    const zt_points *restrict p = &w->points;
+    int padded = zt_batch_padded(p->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        w->sum_r[k] = tracer->ambient.x * p->color_r[k];
+        w->sum_g[k] = tracer->ambient.y * p->color_g[k];
+        w->sum_b[k] = tracer->ambient.z * p->color_b[k];
+    }
+    for (int32_t i = 0; i < tracer->lamp_count; i++) {
+        if (shine_through(w, tracer, &tracer->lamps[i], around))
+            add_lamp(w, true);
+        else
+            add_lamp(w, false);
     }
 }
 
-/* Makes ray j the mirrored one of point k. */
-static inline void mirror_ray(zt_batch *restrict rays, int j, const zt_classic_work *restrict w,
-                              int k) {
-    real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
-    real twice = -2 * real_dot(nx, ny, nz, w->dx[k], w->dy[k], w->dz[k]);
-    real dx = w->dx[k] + twice * nx, dy = w->dy[k] + twice * ny, dz = w->dz[k] + twice * nz;
-    real unit = 1 / sqrtf(real_dot(dx, dy, dz, dx, dy, dz));
-    rays->ox[j] = w->px[k] + w->margin[k] * nx;
-    rays->oy[j] = w->py[k] + w->margin[k] * ny;
-    rays->oz[j] = w->pz[k] + w->margin[k] * nz;
-    rays->dx[j] = dx * unit;
-    rays->dy[j] = dy * unit;
-    rays->dz[j] = dz * unit;
+static void deliver(zt_radiance *restrict light, const work *restrict w) {
+    const zt_points *restrict p = &w->points;
+    WIDE_LOOP for (int k = 0; k < p->count; k++) {
+        int32_t i = p->pixel[k];
+        light->r[i] += (float)(p->weight[k] * w->sum_r[k]);
+        light->g[i] += (float)(p->weight[k] * w->sum_g[k]);
+        light->b[i] += (float)(p->weight[k] * w->sum_b[k]);
+    }
+}
+
+/* Turns ray k, which ended at point k, to its mirrored direction. */
+static inline void mirror_ray(work *restrict w, int k) {
+    zt_batch *restrict rays = &w->rays;
+    const zt_points *restrict p = &w->points;
+    real nx = p->nx[k], ny = p->ny[k], nz = p->nz[k];
+    real twice = -2 * real_dot(nx, ny, nz, rays->dx[k], rays->dy[k], rays->dz[k]);
+    real dx = rays->dx[k] + twice * nx, dy = rays->dy[k] + twice * ny,
+         dz = rays->dz[k] + twice * nz;
+    real unit = 1 / real_sqrt(real_dot(dx, dy, dz, dx, dy, dz));
+    rays->dx[k] = dx * unit;
+    rays->dy[k] = dy * unit;
+    rays->dz[k] = dz * unit;
 }
 
 /* Makes the mirrored rays of the points that reflect the next batch. */
-static void mirror(zt_batch *restrict rays, zt_classic_work *restrict w) {
-    int padded = zt_batch_padded(w->count);
-    WIDE_LOOP for (int k = 0; k < padded; k++) w->wanted[k] = w->reflectivity[k] > 0;
-    rays->count = list_wanted(w->list, w->wanted, w->count);
-    bool all = rays->count == w->count;
-    for (int j = 0; j < rays->count; j++) {
-        int k = w->list[j];
-        w->pixel[j] = w->pixel[k];
-        w->weight[j] = w->weight[k] * w->reflectivity[k];
+static void mirror(work *restrict w) {
+    zt_batch *restrict rays = &w->rays;
+    zt_origins *restrict from = &w->from;
+    zt_points *restrict p = &w->points;
+    int padded = zt_batch_padded(p->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        w->wanted[k] = p->reflectivity[k] > 0;
+        p->weight[k] *= p->reflectivity[k];
+        mirror_ray(w, k);
     }
+    if (all_wanted(w, p->count)) return;
+    if (!any_wanted(w, p->count)) {
+        rays->count = 0;
+        return;
+    }
+    rays->count = list_wanted(w->list, w->wanted, p->count);
     padded = zt_batch_padded(rays->count);
-    if (all) {
-        WIDE_LOOP for (int j = 0; j < padded; j++) mirror_ray(rays, j, w, j);
-    } else {
-        WIDE_LOOP for (int j = 0; j < padded; j++) mirror_ray(rays, j, w, w->list[j]);
+    WIDE_LOOP for (int k = 0; k < padded; k++) { /* moving down, as in keep_hits */
+        int32_t i = w->list[k];
+        from->x[k] = from->x[i];
+        from->y[k] = from->y[i];
+        from->z[k] = from->z[i];
+        from->near[k] = from->near[i];
+        from->source[k] = from->source[i];
+        rays->dx[k] = rays->dx[i];
+        rays->dy[k] = rays->dy[i];
+        rays->dz[k] = rays->dz[i];
+        p->pixel[k] = p->pixel[i];
+        p->weight[k] = p->weight[i];
     }
 }
 
-void ZT_ISA_NAME(zt_classic_trace)(zt_radiance *light, const zt_tracer *tracer, zt_batch *rays,
-                                   zt_classic_work *work) {
+static zt_bundle bundle_around(const work *w, zt_box origins, int32_t source) {
+    const zt_batch *r = &w->rays;
+    return (zt_bundle){.origins = origins,
+                       .directions = zt_range3(r->dx, r->dy, r->dz, r->count),
+                       .source = source};
+}
+
+static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
+                  void *memory) {
+    work *w = memory;
     memset(light, 0, sizeof *light);
-    for (int i = 0; i < rays->count; i++) {
-        work->pixel[i] = i;
-        work->weight[i] = 1;
-    }
-    for (int32_t depth = 0; rays->count > 0; depth++) {
-        intersect(rays, tracer);
-        gather_hits(work, rays);
-        find_surfaces(work, tracer);
-        if (tracer->has_other_surfaces) find_other_surfaces(work, tracer);
-        face_rays(work, tracer->ambient);
-        for (int32_t i = 0; i < tracer->lamp_count; i++) {
-            const zt_lamp *lamp = &tracer->lamps[i];
-            if (!shine(work, lamp)) continue;
-            aim_at_lamp(work, lamp);
-            if (lamp->shadows) occlude(&work->shadow, tracer);
-            add_lamp(work);
-        }
-        deliver(light, work);
-        if (depth >= tracer->reflection_depth) break;
-        mirror(rays, work);
+    begin(w, given);
+    zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
+    w->points.source = -1;
+    for (int32_t depth = 0; w->rays.count > 0; depth++) {
+        zt_bundle bundle = bundle_around(w, around, w->points.source);
+        intersect(&w->rays, &bundle, tracer,
+                  depth == 0 ? ZT_RUNNING_TOGETHER : ZT_RUNNING_APART);
+        keep_hits(w);
+        if (w->rays.count == 0) return;
+        find_points(&w->points, &w->rays, tracer);
+        around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
+        light_points(w, tracer, &around);
+        deliver(light, w);
+        if (depth >= tracer->reflection_depth) return;
+        mirror(w);
     }
 }
+
+/* ---- probes ---------------------------------------------------------------------------------
+ */
+
+static void begin_probes(work *w, const zt_probe *probes, int count) {
+    zt_rays given = {.count = count};
+    for (int i = 0; i < count; i++) {
+        given.ox[i] = probes[i].origin.x;
+        given.oy[i] = probes[i].origin.y;
+        given.oz[i] = probes[i].origin.z;
+        given.dx[i] = probes[i].direction.x;
+        given.dy[i] = probes[i].direction.y;
+        given.dz[i] = probes[i].direction.z;
+    }
+    begin(w, &given);
+    for (int i = 0; i < count; i++) w->from.source[i] = probes[i].source;
+}
+
+static vec3 at(const real *x, const real *y, const real *z, int k) {
+    return (vec3){(double)x[k], (double)y[k], (double)z[k]};
+}
+
+static void tell_hits(zt_probe *probes, const work *w, const zt_tracer *tracer) {
+    const zt_points *p = &w->points;
+    for (int k = 0; k < p->count; k++) {
+        zt_probe *probe = &probes[p->pixel[k]];
+        const zt_primitive *primitive = &tracer->primitives[p->primitive[k]];
+        probe->object = primitive->object;
+        probe->part = primitive->kind == ZT_PRIMITIVE_MESH ? w->rays.part[k] : -1;
+        probe->distance = (double)w->rays.t[k];
+        probe->point = probe->mirror_origin = at(w->from.x, w->from.y, w->from.z, k);
+        probe->normal = at(p->nx, p->ny, p->nz, k);
+        probe->mirror_source = w->from.source[k];
+    }
+}
+
+static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer) {
+    zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
+    for (int32_t i = 0; i < tracer->lamp_count; i++) {
+        const zt_lamp *lamp = &tracer->lamps[i];
+        bool hidden = shine_through(w, tracer, lamp, &around);
+        for (int k = 0; k < w->points.count; k++) {
+            bool open = w->wanted[k] && (!hidden || w->shadow.hit[k] < 0);
+            probes[w->points.pixel[k]].lit |= (uint64_t)open << (lamp->light & 63);
+        }
+    }
+}
+
+static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *memory) {
+    work *w = memory;
+    begin_probes(w, probes, count);
+    for (int i = 0; i < count; i++) {
+        probes[i].object = probes[i].part = -1;
+        probes[i].lit = 0;
+    }
+    zt_bundle bundle =
+        bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
+    intersect(&w->rays, &bundle, tracer, ZT_RUNNING_APART);
+    keep_hits(w);
+    if (w->rays.count == 0) return;
+    find_points(&w->points, &w->rays, tracer);
+    tell_hits(probes, w, tracer);
+    probe_lamps(probes, w, tracer);
+    for (int k = 0; k < w->points.count; k++) {
+        mirror_ray(w, k);
+        probes[w->points.pixel[k]].mirror_direction = at(w->rays.dx, w->rays.dy, w->rays.dz, k);
+    }
+}
+
+const zt_kernel ZT_KERNEL_NAME(zt_kernel) = {trace, probe, sizeof(work)};

@@ -1,52 +1,48 @@
 #include "tracer/hull.h"
 
-static const zt_box empty_box = {{REAL_INFINITY, REAL_INFINITY, REAL_INFINITY},
-                                 {-REAL_INFINITY, -REAL_INFINITY, -REAL_INFINITY}};
+#include <math.h>
 
-static void include(zt_box *box, real3 p) {
-    box->low = (real3){fminf(box->low.x, p.x), fminf(box->low.y, p.y), fminf(box->low.z, p.z)};
-    box->high =
-        (real3){fmaxf(box->high.x, p.x), fmaxf(box->high.y, p.y), fmaxf(box->high.z, p.z)};
+static const zt_bvh_box empty_box = {{INFINITY, INFINITY, INFINITY},
+                                     {-INFINITY, -INFINITY, -INFINITY}};
+
+static const float *corner(const zt_mesh *mesh, int32_t triangle, int i) {
+    return mesh->positions + 3 * (int64_t)mesh->triangles[3 * (int64_t)triangle + i];
 }
 
-static const real3 *corner(const zt_mesh *mesh, int32_t triangle, int i) {
-    return (const real3 *)(mesh->positions +
-                           3 * (int64_t)mesh->triangles[3 * (int64_t)triangle + i]);
+/* Three times the middle of a triangle along an axis. */
+static float middle(const zt_mesh *mesh, int32_t triangle, int axis) {
+    return corner(mesh, triangle, 0)[axis] + corner(mesh, triangle, 1)[axis] +
+           corner(mesh, triangle, 2)[axis];
 }
 
-/* Three times the middle of a triangle along an axis (0, 1, 2). */
-static real middle(const zt_mesh *mesh, int32_t triangle, int axis) {
-    real sum = 0;
-    for (int i = 0; i < 3; i++) {
-        const real3 *p = corner(mesh, triangle, i);
-        sum += axis == 0 ? p->x : axis == 1 ? p->y : p->z;
-    }
-    return sum;
-}
+static float less(float a, float b) { return a < b ? a : b; }
+static float more(float a, float b) { return a > b ? a : b; }
 
 /* The box of the triangles themselves, and of three times their middles. */
-static void bound(zt_box *box, zt_box *middles, const zt_mesh *mesh, const int32_t *order,
-                  int32_t count) {
+static void bound(zt_bvh_box *box, zt_bvh_box *middles, const zt_mesh *mesh,
+                  const int32_t *order, int32_t count) {
     *box = *middles = empty_box;
-    for (int32_t k = 0; k < count; k++) {
-        for (int i = 0; i < 3; i++) include(box, *corner(mesh, order[k], i));
-        include(middles, (real3){middle(mesh, order[k], 0), middle(mesh, order[k], 1),
-                                 middle(mesh, order[k], 2)});
-    }
+    for (int32_t k = 0; k < count; k++)
+        for (int axis = 0; axis < 3; axis++) {
+            float a = corner(mesh, order[k], 0)[axis], b = corner(mesh, order[k], 1)[axis],
+                  c = corner(mesh, order[k], 2)[axis], sum = a + b + c;
+            box->low[axis] = less(box->low[axis], less(a, less(b, c)));
+            box->high[axis] = more(box->high[axis], more(a, more(b, c)));
+            middles->low[axis] = less(middles->low[axis], sum);
+            middles->high[axis] = more(middles->high[axis], sum);
+        }
 }
 
 /* Fills the box at `index` with the triangles order[0 .. count - 1], and those below it. */
 static void split(zt_hull *hull, const zt_mesh *mesh, int32_t *order, int32_t count,
                   int index) {
-    zt_box middles;
+    zt_bvh_box middles;
     bound(&hull->boxes[index], &middles, mesh, order, count);
     if (2 * index >= 1 << ZT_HULL_LEVELS) return;
-    real x = middles.high.x - middles.low.x, y = middles.high.y - middles.low.y,
-         z = middles.high.z - middles.low.z;
-    int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    real low = axis == 0 ? middles.low.x : axis == 1 ? middles.low.y : middles.low.z;
-    real high = axis == 0 ? middles.high.x : axis == 1 ? middles.high.y : middles.high.z;
-    real cut = low + (high - low) / 2;
+    int axis = 0;
+    for (int i = 1; i < 3; i++)
+        if (middles.high[i] - middles.low[i] > middles.high[axis] - middles.low[axis]) axis = i;
+    float cut = middles.low[axis] + (middles.high[axis] - middles.low[axis]) / 2;
     int32_t left = 0;
     for (int32_t k = 0; k < count; k++) {
         int32_t triangle = order[k];

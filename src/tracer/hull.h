@@ -5,13 +5,13 @@
 #define ZT_TRACER_HULL_H
 
 #include "scene/mesh.h"
-#include "tracer/primitives.h"
+#include "tracer/bvh.h"
 
 /* Box 1 holds all triangles; boxes 2 i and 2 i + 1 hold those of box i. In the mesh's space,
  * `origin` left out. */
 enum { ZT_HULL_LEVELS = 6 };
 typedef struct zt_hull {
-    zt_box boxes[1 << ZT_HULL_LEVELS];
+    zt_bvh_box boxes[1 << ZT_HULL_LEVELS];
 } zt_hull;
 
 /* Halves the triangles again and again along the longest side of the box around their middles.

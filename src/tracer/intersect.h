@@ -2,14 +2,30 @@
 #ifndef ZT_TRACER_INTERSECT_H
 #define ZT_TRACER_INTERSECT_H
 
+#include "tracer/bundle.h"
 #include "tracer/isa.h"
 #include "tracer/tracer.h"
 
-/* The nearest hit of each ray (origins, directions and count given): sets t, hit and part; hit
- * is -1 and t infinite where there is none. Of equally near hits the first object's counts. */
-void ZT_ISA_NAME(zt_intersect)(zt_batch *rays, const zt_tracer *tracer);
+/* How rays run: nearly side by side, or anyhow. Costs differ, answers do not. */
+typedef enum zt_running { ZT_RUNNING_TOGETHER, ZT_RUNNING_APART } zt_running;
 
-/* Whether anything is hit before t (given): hit, given as -1, stays so where nothing is. */
-void ZT_ISA_NAME(zt_occlude)(zt_batch *rays, const zt_tracer *tracer);
+/* The nearest hit of each ray (origins, directions and count given) of a bundle: sets t, hit and
+ * part; hit is -1 and t infinite where there is none. Of hits that are as near as roundings can
+ * tell the first object's counts. */
+void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
+                                  const zt_tracer *tracer, zt_running running);
+
+/* Whether something lies between origin and t (given), and not at t itself as far as roundings
+ * can tell: hit, given as -1, stays so where nothing does. */
+void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
+                                const zt_tracer *tracer);
+
+/* False only where no ray of a bundle meets anything. */
+bool ZT_KERNEL_NAME(zt_may_meet)(const zt_bundle *bundle, const zt_tracer *tracer);
+
+/* For one primitive that is not a mesh, and the rays whose numbers are listed: their nearest
+ * hits; with `any`, of shadow rays. */
+void ZT_KERNEL_NAME(zt_meet_listed)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
+                                    const int32_t *list, int count, bool any);
 
 #endif

@@ -3,19 +3,32 @@
 #ifndef ZT_TRACER_PRIMITIVES_H
 #define ZT_TRACER_PRIMITIVES_H
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "tracer/ray.h"
+#include "tracer/real.h"
+#include "tracer/solids.h"
+#include "tracer/solids_torus.h"
 
 typedef enum zt_primitive_kind {
     ZT_PRIMITIVE_PLANE,
     ZT_PRIMITIVE_SPHERE,
-    ZT_PRIMITIVE_ELLIPSOID, /* a sphere in a group that stretches it */
     ZT_PRIMITIVE_TRIANGLE,
-    ZT_PRIMITIVE_MESH /* intersected by meshes.c */
+    ZT_PRIMITIVE_MESH,
+    /* Solids, each in a space of its own (tracer/solids.h). */
+    ZT_PRIMITIVE_BALL, /* a sphere in a group that stretches it */
+    ZT_PRIMITIVE_DISK,
+    ZT_PRIMITIVE_BOX,
+    ZT_PRIMITIVE_CYLINDER,
+    ZT_PRIMITIVE_CONE,
+    ZT_PRIMITIVE_CAPSULE,
+    ZT_PRIMITIVE_TORUS,
+    ZT_PRIMITIVE_KIND_COUNT
 } zt_primitive_kind;
+
+static inline bool zt_kind_is_solid(zt_primitive_kind kind) {
+    return kind >= ZT_PRIMITIVE_BALL;
+}
 
 /* A box along the axes; low > high where it is empty. */
 typedef struct zt_box {
@@ -24,18 +37,23 @@ typedef struct zt_box {
 
 /* The largest number in a box. */
 static inline real zt_box_size(const zt_box *b) {
-    real low = real_max(real_max(fabsf(b->low.x), fabsf(b->low.y)), fabsf(b->low.z));
-    real high = real_max(real_max(fabsf(b->high.x), fabsf(b->high.y)), fabsf(b->high.z));
+    real low = real_max(real_max(real_abs(b->low.x), real_abs(b->low.y)), real_abs(b->low.z));
+    real high =
+        real_max(real_max(real_abs(b->high.x), real_abs(b->high.y)), real_abs(b->high.z));
     return real_max(low, high);
 }
 
+/* The intersections with what is within a box may round out of it by this many roundings of the
+ * largest number there is, times the primitive's `stretch`. */
+#define BOX_ROUNDINGS 32
+
 /* One thing to hit, in the space relative to the camera. Primitives stand in the order of their
- * objects; of equally near hits the first one counts. */
+ * objects. */
 typedef struct zt_primitive {
     zt_primitive_kind kind;
     int32_t object; /* its index in the scene */
-    int32_t mesh;   /* of a mesh: the index in the scene, else -1 */
-    zt_box box;     /* around spheres and triangles */
+    zt_box box;     /* around all but planes */
+    real stretch;   /* how many times more roundings than a sphere's its arithmetic may have */
     union {
         struct {
             real3 normal; /* unit */
@@ -46,72 +64,57 @@ typedef struct zt_primitive {
             real radius;
         } sphere;
         struct {
-            real3 to_unit[3]; /* rows of the matrix that makes it the unit sphere */
-            real3 center;
-        } ellipsoid;
-        struct {
             real3 vertices[3];
         } triangle;
+        struct {
+            real3 rows[3]; /* of the matrix that takes directions to the solid's space */
+            real3 center;  /* where that space's origin is */
+            real a, b;     /* of a cone: its radii; of a capsule: its length; of a torus: the
+                              tube's radius */
+        } solid;
+        int32_t placed; /* of a mesh: its index among the placed ones */
     };
 } zt_primitive;
 
 /* Each function below gives the nearest positive distance at which the ray o + t d, |d| = 1,
- * meets the primitive, or infinity (or NaN, which compares as no hit). */
+ * meets the primitive, or infinity (or NaN, which compares as no hit). `leaving` is 0 for a ray
+ * that begins elsewhere, 1 for one that begins on this surface and goes on outside of it, -1
+ * for one that goes on inside. */
 
 static inline real zt_plane_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
-                                     real dy, real dz) {
+                                     real dy, real dz, int32_t leaving) {
     real3 n = p->plane.normal;
     real t = (p->plane.distance - real_dot(n.x, n.y, n.z, ox, oy, oz)) /
              real_dot(n.x, n.y, n.z, dx, dy, dz);
-    return t > 0 ? t : REAL_INFINITY;
+    return ((t > 0) & (leaving == 0)) ? t : REAL_INFINITY;
 }
 
-/* Roots of a t^2 - 2 b t + c = 0 with the part across the ray, `across2` = |f + (b/a) d|^2, in
- * place of the cancelling b^2 - a c: Haines, Gunther and Akenine-Moller, "Precision
- * improvements for ray/sphere intersection", Ray Tracing Gems, 2019. The far one counts from
- * inside. */
-static inline real sphere_root(real a, real b, real c, real radius2, real across2) {
-    real inside = radius2 - across2;
-    real half = sqrtf(a * (inside > 0 ? inside : 0));
-    real q = b + (b < 0 ? -half : half);
-    real t0 = c / q, t1 = q / a;
-    real first = t0 < t1 ? t0 : t1, second = t0 < t1 ? t1 : t0;
-    real t = first > 0 ? first : second;
-    return ((inside > 0) & (t > 0)) ? t : REAL_INFINITY;
-}
-
+/* Roots of t^2 - 2 b t + c = 0 with the part across the ray, |f + b d|^2, in place of the
+ * cancelling b^2 - c: Haines, Gunther and Akenine-Moller, "Precision improvements for
+ * ray/sphere intersection", Ray Tracing Gems, 2019. The far one counts from inside. Of a ray
+ * that leaves the sphere inwards one root is 0, and the other one, 2 b, is positive. */
 static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
-                                      real dy, real dz) {
+                                      real dy, real dz, int32_t leaving) {
     real3 center = p->sphere.center;
     real r2 = p->sphere.radius * p->sphere.radius;
     real fx = ox - center.x, fy = oy - center.y, fz = oz - center.z;
     real b = -real_dot(fx, fy, fz, dx, dy, dz);
     real lx = fx + b * dx, ly = fy + b * dy, lz = fz + b * dz;
     real c = real_dot(fx, fy, fz, fx, fy, fz) - r2;
-    return sphere_root(1, b, c, r2, real_dot(lx, ly, lz, lx, ly, lz));
-}
-
-static inline real zt_ellipsoid_distance(const zt_primitive *p, real ox, real oy, real oz,
-                                         real dx, real dy, real dz) {
-    const real3 *m = p->ellipsoid.to_unit;
-    real3 center = p->ellipsoid.center;
-    real gx = ox - center.x, gy = oy - center.y, gz = oz - center.z;
-    real fx = real_dot(m[0].x, m[0].y, m[0].z, gx, gy, gz);
-    real fy = real_dot(m[1].x, m[1].y, m[1].z, gx, gy, gz);
-    real fz = real_dot(m[2].x, m[2].y, m[2].z, gx, gy, gz);
-    real ex = real_dot(m[0].x, m[0].y, m[0].z, dx, dy, dz);
-    real ey = real_dot(m[1].x, m[1].y, m[1].z, dx, dy, dz);
-    real ez = real_dot(m[2].x, m[2].y, m[2].z, dx, dy, dz);
-    real a = real_dot(ex, ey, ez, ex, ey, ez);
-    real b = -real_dot(fx, fy, fz, ex, ey, ez), k = b / a;
-    real lx = fx + k * ex, ly = fy + k * ey, lz = fz + k * ez;
-    real c = real_dot(fx, fy, fz, fx, fy, fz) - 1;
-    return sphere_root(a, b, c, 1, real_dot(lx, ly, lz, lx, ly, lz));
+    real inside = r2 - real_dot(lx, ly, lz, lx, ly, lz);
+    real half = real_sqrt(real_max(inside, 0));
+    real q = b + (b < 0 ? -half : half), s = c / q;
+    real first = real_min(s, q), second = real_max(s, q);
+    real t = first > 0 ? first : second;
+    t = ((inside > 0) & (t > 0)) ? t : REAL_INFINITY;
+    real through = real_max(2 * b, REAL_LEAST);
+    return leaving == 0 ? t : leaving < 0 ? through : REAL_INFINITY;
 }
 
 /* The side of the origin that a directed edge a -> b has it on, twice the area they span. The
- * products of floats are exact in double, so the sign is that of the exact result, and the edge
- * taken the other way round gives exactly the negative. */
+ * products of floats are exact in double, so the sign is that of the exact result; of doubles
+ * they are rounded. Either way the edge taken the other way round gives exactly the negative.
+ */
 static inline double edge_side(real ax, real ay, real bx, real by) {
     return (double)ax * (double)by - (double)ay * (double)bx;
 }
@@ -124,20 +127,23 @@ static inline bool edge_owned(real ax, real ay, real bx, real by) {
 }
 
 /* Watertight: Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2(1), 2013.
- * The triangle is sheared so that the ray runs along an axis; what is left is a 2D test of
- * which side of its edges the origin lies on, and neighbours agree on their common edge. */
-static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy, real oz,
-                                        real dx, real dy, real dz) {
-    bool x_longest = (fabsf(dx) >= fabsf(dy)) & (fabsf(dx) >= fabsf(dz));
-    bool y_longest = !x_longest & (fabsf(dy) >= fabsf(dz));
+ * The triangle is sheared so that the ray, of any length, runs along an axis; what is left is a
+ * 2D test of which side of its edges the origin lies on, and neighbours agree on their common
+ * edge. */
+static inline real zt_triangle_meet(real3 v0, real3 v1, real3 v2, real ox, real oy, real oz,
+                                    real dx, real dy, real dz) {
+    bool x_longest =
+        (real_abs(dx) >= real_abs(dy)) & (real_abs(dx) >= real_abs(dz));
+    bool y_longest = !x_longest & (real_abs(dy) >= real_abs(dz));
     /* The axes in cyclic order, so that z is the one along which the ray runs most. */
     real ex = x_longest ? dy : y_longest ? dz : dx;
     real ey = x_longest ? dz : y_longest ? dx : dy;
     real ez = x_longest ? dx : y_longest ? dy : dz;
     real shear_x = ex / ez, shear_y = ey / ez;
+    const real3 vertices[3] = {v0, v1, v2};
     real x[3], y[3], z[3];
     for (int i = 0; i < 3; i++) {
-        real3 v = p->triangle.vertices[i];
+        real3 v = vertices[i];
         real vx = v.x - ox, vy = v.y - oy, vz = v.z - oz;
         z[i] = x_longest ? vx : y_longest ? vy : vz;
         x[i] = (x_longest ? vy : y_longest ? vz : vx) - shear_x * z[i];
@@ -156,5 +162,35 @@ static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy,
     double t = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / (area * (double)ez);
     return (u_in & v_in & w_in & (area != 0) & (t > 0)) ? (real)t : REAL_INFINITY;
 }
+
+static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy, real oz,
+                                        real dx, real dy, real dz, int32_t leaving) {
+    const real3 *v = p->triangle.vertices;
+    real t = zt_triangle_meet(v[0], v[1], v[2], ox, oy, oz, dx, dy, dz);
+    return leaving == 0 ? t : REAL_INFINITY;
+}
+
+/* A solid's: the ray is taken to its space, where distances along it stay what they are. */
+#define ZT_SOLID_DISTANCE(kind)                                                                \
+    static inline real zt_##kind##_distance(const zt_primitive *p, real ox, real oy, real oz,  \
+                                            real dx, real dy, real dz, int32_t leaving) {      \
+        const real3 *m = p->solid.rows;                                                        \
+        real3 c = p->solid.center;                                                             \
+        real gx = ox - c.x, gy = oy - c.y, gz = oz - c.z;                                      \
+        return zt_##kind##_meet(real_dot(m[0].x, m[0].y, m[0].z, gx, gy, gz),                  \
+                                real_dot(m[1].x, m[1].y, m[1].z, gx, gy, gz),                  \
+                                real_dot(m[2].x, m[2].y, m[2].z, gx, gy, gz),                  \
+                                real_dot(m[0].x, m[0].y, m[0].z, dx, dy, dz),                  \
+                                real_dot(m[1].x, m[1].y, m[1].z, dx, dy, dz),                  \
+                                real_dot(m[2].x, m[2].y, m[2].z, dx, dy, dz), p->solid.a,      \
+                                p->solid.b, leaving);                                          \
+    }
+ZT_SOLID_DISTANCE(ball)
+ZT_SOLID_DISTANCE(disk)
+ZT_SOLID_DISTANCE(box)
+ZT_SOLID_DISTANCE(cylinder)
+ZT_SOLID_DISTANCE(cone)
+ZT_SOLID_DISTANCE(capsule)
+ZT_SOLID_DISTANCE(torus)
 
 #endif

@@ -5,17 +5,28 @@
 #include <stdalign.h>
 #include <stdint.h>
 
+#include "tracer/kernel.h"
 #include "tracer/real.h"
 
-/* Rays in a batch, at most: a tile of 16 x 16 pixels. A multiple of any number of lanes. */
-enum { ZT_BATCH = 256, ZT_BATCH_LANES = 16 };
+/* A batch is a multiple of any number of lanes. */
+enum { ZT_BATCH_LANES = 16 };
+
+/* Where rays begin. `source` says on whose surface: -1 for none, else twice the index of the
+ * primitive, and one more where the ray goes on inside of it. `near` is the distance within
+ * which roundings decide what lies before the ray and what behind: a shadow ray passes what it
+ * meets there, as where two walls join. */
+typedef struct zt_origins {
+    alignas(64) real x[ZT_BATCH];
+    alignas(64) real y[ZT_BATCH];
+    alignas(64) real z[ZT_BATCH];
+    alignas(64) real near[ZT_BATCH];
+    alignas(64) int32_t source[ZT_BATCH];
+} zt_origins;
 
 /* Rays o + t d with unit directions, and what they hit. Entries from `count` up to the next
  * multiple of ZT_BATCH_LANES are there for the loops to run over, and mean nothing. */
 typedef struct zt_batch {
-    alignas(64) real ox[ZT_BATCH];
-    alignas(64) real oy[ZT_BATCH];
-    alignas(64) real oz[ZT_BATCH];
+    zt_origins *from;
     alignas(64) real dx[ZT_BATCH];
     alignas(64) real dy[ZT_BATCH];
     alignas(64) real dz[ZT_BATCH];
@@ -28,5 +39,8 @@ typedef struct zt_batch {
 static inline int zt_batch_padded(int count) {
     return (count + ZT_BATCH_LANES - 1) / ZT_BATCH_LANES * ZT_BATCH_LANES;
 }
+
+/* What roundings can tell apart, as a share of the largest number around. */
+#define TIE (16 * REAL_ROUNDING)
 
 #endif

@@ -1,52 +1,78 @@
-/* The tracer: a scene made ready for rays. Lives for one frame, in the frame's arena. */
+/* What the kernels of one precision work on: a scene made ready for rays. Lives for one frame,
+ * in the frame's arena. */
 #ifndef ZT_TRACER_TRACER_H
 #define ZT_TRACER_TRACER_H
 
 #include <stdint.h>
 
-#include <zoetrope/status.h>
-
-#include "base/arena.h"
-#include "scene/scene.h"
-#include "tracer/meshes.h"
+#include "tracer/kernel.h"
 #include "tracer/primitives.h"
 #include "tracer/ray.h"
 
-/* The surface of a plane, sphere or triangle: of a point p near it, the normal n is the unit
- * vector along normal + bend (p - center), and n . (p - center) - level is the distance that p
- * still has to it. One form for all three, so that one loop without branches serves them. Rows
- * of other kinds are zero. */
+/* How a primitive looks; and, of a plane, sphere or triangle, its surface: of a point p near it,
+ * the normal n is the unit vector along normal + bend (p - center), and n . (p - center) -
+ * level is the distance that p still has to it. One form for all three, so that one loop
+ * without branches serves them. Rows of other kinds have zeros there. */
 typedef struct zt_surface {
     real3 normal;
     real bend;
     real3 center;
     real level;
-    real extent; /* the largest coordinate or length in its arithmetic */
     real3 color;
     real reflectivity;
+    int32_t pattern; /* an index, or -1 */
+    int32_t closed;  /* 1: it has an inside; 0: it is flat; -1: a mesh, which may be either */
 } zt_surface;
+
+/* A pattern made ready: the point p has the place row . p + at, counted in cells, and lies in a
+ * cell of `other` color where the sum of the place's whole parts is odd. */
+typedef struct zt_weave {
+    real3 rows[3], at;
+    real3 other;
+} zt_weave;
 
 typedef struct zt_lamp {
     real3 position;
     real3 power; /* color * intensity */
-    int32_t shadows;
+    int32_t light; /* its index in the scene */
+    bool shadows;
 } zt_lamp;
 
-typedef struct zt_tracer {
+/* A mesh in its place: a point p relative to the camera is at row . p + at in the mesh's own
+ * space, `origin` left out; give or take `room` (in that space), which grows by `reach` times
+ * the largest coordinate of p. */
+typedef struct zt_placed_mesh {
+    const zt_built_mesh *built;
+    vec3 rows[3], at;
+    xform place; /* the way back */
+    real reach, room;
+    real extent; /* the largest coordinate of its bounds, in the mesh's space and placed */
+    bool smooth, vertex_colors;
+} zt_placed_mesh;
+
+static inline vec3 zt_placed_point(const zt_placed_mesh *m, vec3 p) {
+    return vec3_add(m->at, (vec3){vec3_dot(m->rows[0], p), vec3_dot(m->rows[1], p),
+                                  vec3_dot(m->rows[2], p)});
+}
+
+struct zt_tracer {
     const zt_primitive *primitives;
     const zt_surface *surfaces; /* one for each primitive */
     int32_t primitive_count;
+    const int32_t *single; /* the primitives that are asked one by one, in order */
+    int32_t single_count;
+    const int32_t *crowd_primitives; /* those asked through a hierarchy over their boxes */
+    const zt_bvh *crowd;             /* NULL where there are few */
+    zt_box crowd_box;                /* around them all */
+    const zt_placed_mesh *placed;
+    int32_t placed_count;
+    const zt_weave *weaves;
     const zt_lamp *lamps; /* the point lights, in order */
     int32_t lamp_count;
     real3 ambient; /* the sum of the ambient lights */
     int32_t reflection_depth;
-    const zt_meshes *meshes; /* NULL where the scene has none */
-    bool has_other_surfaces; /* some primitives need more than their zt_surface */
-} zt_tracer;
-
-/* Makes a scene ready. Things that are degenerate (a radius of zero, a flattening scale,
- * numbers that are not finite) have nothing to hit and are left out. */
-zt_status zt_tracer_prepare(zt_tracer *tracer, const zt_scene *scene, zt_meshes *meshes,
-                            zt_arena *arena);
+    real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0 */
+    bool has_solids, has_patterns;
+};
 
 #endif

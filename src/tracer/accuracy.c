@@ -1,0 +1,115 @@
+#include "tracer/accuracy.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A thing's place is known to within this many roundings of single precision of the largest
+ * number in its arithmetic: subtraction from the camera, intersection and projection together
+ * stay below. */
+#define WRONG (16 * 0x1p-24)
+
+/* What may be seen of that: an eighth of a pixel; and a sixty-fourth of the way to a lamp, by
+ * which its light changes by a thirtieth. */
+#define SEEN      (1.0 / 8)
+#define SEEN_LAMP (1.0 / 64)
+
+/* Squares of larger numbers, or of smaller ones, leave the range of single precision. */
+#define LARGEST 1e15
+#define LEAST   1e-15
+
+/* After so many mirrors the roundings of each have added up to what one surface's are. */
+enum { MIRRORS_MAX = 64 };
+
+/* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
+ * double precision can tell. Looked for among so many things at most. */
+#define SAME 0x1p-44
+enum { TWINS_MAX = 4096 };
+
+static zt_accuracy judge_one(const zt_extent *e, double pixel) {
+    zt_accuracy a = {.object = e->object, .other = -1, .wrong = WRONG * e->stretch * e->size};
+    if (!(e->size < LARGEST) || e->least < LEAST || !(e->stretch < 1 / WRONG))
+        a.reason = e->stretch < 1 / WRONG ? ZT_ACCURACY_RANGE : ZT_ACCURACY_STRETCH;
+    a.seen = SEEN * pixel * e->near;
+    if (a.reason == ZT_ACCURACY_FINE && a.wrong > a.seen)
+        a.reason = e->near * 2 > e->size ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
+    if (a.reason == ZT_ACCURACY_FINE && a.wrong > SEEN_LAMP * e->lamp)
+        a = (zt_accuracy){ZT_ACCURACY_LAMP, e->object, e->lamp_light, a.wrong,
+                          SEEN_LAMP * e->lamp};
+    return a;
+}
+
+static bool boxes_meet(const zt_extent *a, const zt_extent *b, double room) {
+    return a->low.x <= b->high.x + room && b->low.x <= a->high.x + room &&
+           a->low.y <= b->high.y + room && b->low.y <= a->high.y + room &&
+           a->low.z <= b->high.z + room && b->low.z <= a->high.z + room;
+}
+
+/* How far apart two surfaces that lie along each other are; infinite where they do not. */
+static double apart(const zt_extent *a, const zt_extent *b) {
+    if (a->flat != b->flat) return INFINITY;
+    double room = WRONG * fmax(a->size, b->size);
+    if (!boxes_meet(a, b, room)) return INFINITY;
+    if (a->flat) {
+        double side = vec3_dot(a->normal, b->normal) < 0 ? -1 : 1;
+        double turned = vec3_length(vec3_sub(a->normal, vec3_scale(b->normal, side)));
+        double reach = fmin(fmax(a->size, b->size), LARGEST);
+        return fabs(a->distance - side * b->distance) + turned * reach;
+    }
+    return fmax(vec3_max_abs(vec3_sub(a->low, b->low)),
+                vec3_max_abs(vec3_sub(a->high, b->high)));
+}
+
+/* Where an extent stands in the order in which twins are neighbours. */
+static double rank(const zt_extent *e) { return e->flat ? fabs(e->distance) : e->low.x; }
+
+static int by_rank(const void *pa, const void *pb) {
+    const zt_extent *a = *(const zt_extent *const *)pa, *b = *(const zt_extent *const *)pb;
+    if (a->flat != b->flat) return a->flat - b->flat;
+    if (rank(a) != rank(b)) return rank(a) < rank(b) ? -1 : 1;
+    return a->object < b->object ? -1 : a->object > b->object;
+}
+
+/* Looks for two surfaces that are as near to each other as `least` to `most` of their size. */
+static bool find_twins(const zt_extent **one, const zt_extent **other, double *gap,
+                       const zt_extent *extents, int32_t count, double least, double most) {
+    const zt_extent *sorted[TWINS_MAX];
+    if (count > TWINS_MAX) return false;
+    for (int32_t i = 0; i < count; i++) sorted[i] = &extents[i];
+    qsort(sorted, (size_t)count, sizeof *sorted, by_rank);
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t j = i + 1; j < count; j++) {
+            const zt_extent *a = sorted[i], *b = sorted[j];
+            double size = fmax(a->size, b->size);
+            if (a->flat != b->flat || rank(b) - rank(a) > most * size) break;
+            *gap = apart(a, b);
+            *one = a;
+            *other = b;
+            if (*gap <= most * size && *gap >= least * size) return true;
+        }
+    return false;
+}
+
+bool zt_accuracy_twins(const zt_extent *extents, int32_t count, double most) {
+    const zt_extent *one, *other;
+    double gap;
+    return find_twins(&one, &other, &gap, extents, count, 0, most);
+}
+
+zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_scene *scene,
+                              double pixel) {
+    bool mirrors = false;
+    for (int32_t i = 0; i < scene->material_count; i++)
+        mirrors |= scene->materials[i].reflectivity > 0;
+    if (mirrors && scene->reflection_depth > MIRRORS_MAX)
+        return (zt_accuracy){.reason = ZT_ACCURACY_MIRRORS, .object = -1, .other = -1};
+    for (int32_t i = 0; i < count; i++) {
+        zt_accuracy a = judge_one(&extents[i], pixel);
+        if (a.reason != ZT_ACCURACY_FINE) return a;
+    }
+    const zt_extent *one, *other;
+    double gap;
+    if (!find_twins(&one, &other, &gap, extents, count, SAME, WRONG))
+        return (zt_accuracy){.object = -1, .other = -1};
+    return (zt_accuracy){ZT_ACCURACY_TWIN, one->object, other->object,
+                         WRONG * fmax(one->size, other->size), gap};
+}

@@ -1,0 +1,53 @@
+/* Whether single precision is enough for a frame: the roundings of each thing's arithmetic
+ * against what can be seen of them. */
+#ifndef ZT_TRACER_ACCURACY_H
+#define ZT_TRACER_ACCURACY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec.h"
+#include "scene/scene.h"
+
+typedef enum zt_accuracy_reason {
+    ZT_ACCURACY_FINE,
+    ZT_ACCURACY_NEAR,    /* the camera is near its surface, seen against its size */
+    ZT_ACCURACY_NARROW,  /* far away in a narrow view */
+    ZT_ACCURACY_LAMP,    /* a lamp is near its surface */
+    ZT_ACCURACY_TWIN,    /* another surface nearly lies on it */
+    ZT_ACCURACY_RANGE,   /* its numbers are too large or too small */
+    ZT_ACCURACY_MIRRORS, /* too many mirrors, one after the other */
+    ZT_ACCURACY_STRETCH  /* it is stretched too much */
+} zt_accuracy_reason;
+
+/* The first thing found that asks for double precision. */
+typedef struct zt_accuracy {
+    zt_accuracy_reason reason;
+    int32_t object, other; /* indices in the scene; other: light or object, or -1 */
+    double wrong;          /* how far off single precision may be, in the unit of space */
+    double seen;           /* what may be seen of that, likewise */
+} zt_accuracy;
+
+/* One surface as it was made ready, in the space relative to the camera, in double precision. */
+typedef struct zt_extent {
+    int32_t object;
+    bool flat;       /* a plane, disk or triangle: of points p with normal . p = distance */
+    vec3 normal;     /* unit; of flat ones */
+    double distance; /* likewise */
+    vec3 low, high;  /* bounds; infinite for planes */
+    double size;     /* the largest number in its arithmetic */
+    double least;    /* its smallest size that counts; infinite for planes */
+    double near;     /* how far away the surface is from the camera, at least about */
+    double stretch;  /* how many times more roundings than a sphere's it has */
+    double lamp;     /* how far away the nearest lamp is; infinite where there is none */
+    int32_t lamp_light;
+} zt_extent;
+
+/* `pixel` is the width of a pixel at distance 1. */
+zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_scene *scene,
+                              double pixel);
+
+/* Whether two surfaces lie on each other: as near as `most` of their size. */
+bool zt_accuracy_twins(const zt_extent *extents, int32_t count, double most);
+
+#endif

@@ -1,0 +1,63 @@
+/* Chooses: the precision that a scene asks for, and the widest compiled version of the kernels
+ * that this machine can run. */
+#include "tracer/kernel.h"
+
+#include <stdlib.h>
+
+#include "base/diag.h"
+#include "base/text.h"
+
+#define KERNELS(isa) const zt_kernel zt_kernel_single_##isa, zt_kernel_double_##isa
+extern KERNELS(scalar);
+extern KERNELS(base);
+#if defined __x86_64__
+extern KERNELS(avx2);
+extern KERNELS(avx512);
+#endif
+
+/* Compiled by ZT_REAL_NAME in tracer/prepare.c, which is of one precision at a time. */
+typedef zt_status prepare(zt_tracer **tracer, zt_extent **extents, int32_t *extent_count,
+                          const zt_scene *scene, zt_meshes *meshes, zt_arena *arena);
+prepare zt_prepare_single, zt_prepare_double;
+
+static const zt_kernel *select_kernel(zt_precision precision) {
+    const char *wanted = getenv("ZOETROPE_ISA");
+    bool single = precision == ZT_PRECISION_SINGLE;
+    if (wanted && zt_text_equal(wanted, "scalar"))
+        return single ? &zt_kernel_single_scalar : &zt_kernel_double_scalar;
+#if defined __x86_64__
+    bool any = !wanted || !*wanted;
+    bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+    if (has_avx512 && (any || zt_text_equal(wanted, "avx512")))
+        return single ? &zt_kernel_single_avx512 : &zt_kernel_double_avx512;
+    if (__builtin_cpu_supports("avx2") && (any || zt_text_equal(wanted, "avx2")))
+        return single ? &zt_kernel_single_avx2 : &zt_kernel_double_avx2;
+#endif
+    return single ? &zt_kernel_single_base : &zt_kernel_double_base;
+}
+
+zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision precision,
+                            double pixel, zt_meshes *meshes, zt_arena *arena) {
+    zt_tracer *tracer;
+    zt_extent *extents;
+    int32_t count;
+    *ready = (zt_ready){.precision = precision};
+    if (precision != ZT_PRECISION_DOUBLE) {
+        ZT_TRY(zt_prepare_single(&tracer, &extents, &count, scene, meshes, arena));
+        if (precision == ZT_PRECISION_AUTO)
+            ready->accuracy = zt_accuracy_judge(extents, count, scene, pixel);
+        ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
+                                                                      : ZT_PRECISION_DOUBLE;
+    }
+    if (ready->precision == ZT_PRECISION_DOUBLE)
+        ZT_TRY(zt_prepare_double(&tracer, &extents, &count, scene, meshes, arena));
+    ready->tracer = tracer;
+    ready->kernel = select_kernel(ready->precision);
+    return ZT_OK;
+}
+
+size_t zt_kernel_work_size(void) {
+    /* The same for all widths; doubles need more. */
+    return zt_kernel_double_base.work_size;
+}

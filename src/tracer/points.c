@@ -1,0 +1,320 @@
+/* The points where rays end. Loops run over whole groups of lanes: what lies beyond the count is
+ * computed and never used, but must be safe to compute. Compiled once for each width of
+ * instructions and each precision (tracer/isa.h). */
+#include "tracer/points.h"
+
+#include <math.h>
+
+/* How far off a surface rays begin that go on from it, against the roundings of surfaces that
+ * lie on it, as a thing lies on a floor: a few roundings of a position on each side. Its own
+ * surface is left out exactly (zt_origins.source), but for a mesh's: there, the numbers in the
+ * mesh's own space are rounded as well, in its intersection and in the next ray's. */
+#define MARGIN_ROUNDINGS 8
+#define MESH_MARGIN      4
+
+/* ---- surfaces -------------------------------------------------------------------------------
+ */
+
+static void go_to_ends(zt_points *restrict w, const zt_batch *restrict rays,
+                       zt_origins *restrict from) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        real t = rays->t[k];
+        int32_t hit = rays->hit[k];
+        w->primitive[k] = hit > 0 ? hit : 0;
+        from->x[k] += t * rays->dx[k];
+        from->y[k] += t * rays->dy[k];
+        from->z[k] += t * rays->dz[k];
+    }
+}
+
+/* The looks of point k; the normal, and the corrected position, where its kind is one of which a
+ * zt_surface says all. A row of zeros leaves the position as it is. */
+static inline void find_surface(zt_points *restrict w, zt_origins *restrict from, int k,
+                                const zt_surface *s) {
+    real qx = from->x[k] - s->center.x, qy = from->y[k] - s->center.y,
+         qz = from->z[k] - s->center.z;
+    real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
+         nz = s->normal.z + s->bend * qz;
+    real unit = 1 / real_sqrt(real_max(real_dot(nx, ny, nz, nx, ny, nz), REAL_LEAST));
+    nx *= unit;
+    ny *= unit;
+    nz *= unit;
+    real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
+    from->x[k] -= off * nx;
+    from->y[k] -= off * ny;
+    from->z[k] -= off * nz;
+    from->near[k] = 0;
+    w->nx[k] = nx;
+    w->ny[k] = ny;
+    w->nz[k] = nz;
+    w->color_r[k] = s->color.x;
+    w->color_g[k] = s->color.y;
+    w->color_b[k] = s->color.z;
+    w->reflectivity[k] = s->reflectivity;
+    w->closed[k] = s->closed;
+}
+
+/* All points; where they lie on one primitive, as most of a tile's do, nothing is gathered. */
+static void find_surfaces(zt_points *restrict w, zt_origins *restrict from,
+                          const zt_tracer *tracer) {
+    int32_t first = w->primitive[0], others = 0;
+    int padded = zt_batch_padded(w->count);
+    for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
+    w->source = others ? -1 : first;
+    if (others) {
+        WIDE_LOOP for (int k = 0; k < padded; k++)
+            find_surface(w, from, k, &tracer->surfaces[w->primitive[k]]);
+    } else {
+        const zt_surface only = tracer->surfaces[first];
+        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only);
+    }
+}
+
+/* Lists the points that lie on primitives of a kind. */
+static int list_kind(int32_t *restrict list, const zt_points *restrict w,
+                     const zt_tracer *tracer, zt_primitive_kind kind) {
+    int count = 0;
+    for (int k = 0; k < w->count; k++) {
+        list[count] = k;
+        count += tracer->primitives[w->primitive[k]].kind == kind;
+    }
+    return count;
+}
+
+/* The same for a solid: with its own space's distance f and normal n there, the gradient of the
+ * distance is g = M^T n, and one step of Newton's, f / |g|^2 g, leads onto the surface. */
+#define DEFINE_SOLID(kind)                                                                     \
+    static void kind##_surfaces(zt_points *restrict w, zt_origins *restrict from,              \
+                                const zt_tracer *tracer, const int32_t *restrict list,         \
+                                int count) {                                                   \
+        WIDE_LOOP for (int j = 0; j < count; j++) {                                            \
+            int32_t k = list[j];                                                               \
+            const zt_primitive *p = &tracer->primitives[w->primitive[k]];                      \
+            real3 rx = p->solid.rows[0], ry = p->solid.rows[1], rz = p->solid.rows[2];         \
+            real gx = from->x[k] - p->solid.center.x, gy = from->y[k] - p->solid.center.y,     \
+                 gz = from->z[k] - p->solid.center.z;                                          \
+            zt_face f = zt_##kind##_surface(                                                   \
+                real_dot(rx.x, rx.y, rx.z, gx, gy, gz), real_dot(ry.x, ry.y, ry.z, gx, gy, gz), \
+                real_dot(rz.x, rz.y, rz.z, gx, gy, gz), p->solid.a, p->solid.b);               \
+            real nx = rx.x * f.nx + ry.x * f.ny + rz.x * f.nz;                                 \
+            real ny = rx.y * f.nx + ry.y * f.ny + rz.y * f.nz;                                 \
+            real nz = rx.z * f.nx + ry.z * f.ny + rz.z * f.nz;                                 \
+            real unit = 1 / real_sqrt(real_dot(nx, ny, nz, nx, ny, nz)), step = f.off * unit;  \
+            nx *= unit;                                                                        \
+            ny *= unit;                                                                        \
+            nz *= unit;                                                                        \
+            from->x[k] -= step * nx;                                                           \
+            from->y[k] -= step * ny;                                                           \
+            from->z[k] -= step * nz;                                                           \
+            w->nx[k] = nx;                                                                     \
+            w->ny[k] = ny;                                                                     \
+            w->nz[k] = nz;                                                                     \
+        }                                                                                      \
+    }
+DEFINE_SOLID(ball)
+DEFINE_SOLID(disk)
+DEFINE_SOLID(box)
+DEFINE_SOLID(cylinder)
+DEFINE_SOLID(cone)
+DEFINE_SOLID(capsule)
+DEFINE_SOLID(torus)
+
+typedef void solid_surfaces(zt_points *restrict w, zt_origins *restrict from,
+                            const zt_tracer *tracer, const int32_t *restrict list, int count);
+static solid_surfaces *const solids[ZT_PRIMITIVE_KIND_COUNT] = {
+    [ZT_PRIMITIVE_BALL] = ball_surfaces, [ZT_PRIMITIVE_DISK] = disk_surfaces,
+    [ZT_PRIMITIVE_BOX] = box_surfaces,             [ZT_PRIMITIVE_CYLINDER] = cylinder_surfaces,
+    [ZT_PRIMITIVE_CONE] = cone_surfaces,           [ZT_PRIMITIVE_CAPSULE] = capsule_surfaces,
+    [ZT_PRIMITIVE_TORUS] = torus_surfaces};
+
+/* ---- meshes ---------------------------------------------------------------------------------
+ */
+
+static vec3 corner(const float *values, const uint32_t *of, int i) {
+    const float *v = values + 3 * (int64_t)of[i];
+    return (vec3){(double)v[0], (double)v[1], (double)v[2]};
+}
+
+/* Takes a gradient or normal of the mesh's space to the space relative to the camera. */
+static vec3 out_of_mesh(const zt_placed_mesh *m, vec3 n) {
+    return vec3_add(vec3_add(vec3_scale(m->rows[0], n.x), vec3_scale(m->rows[1], n.y)),
+                    vec3_scale(m->rows[2], n.z));
+}
+
+static vec3 unit(vec3 v) { return vec3_scale(v, 1 / sqrt(vec3_dot(v, v))); }
+
+/* A point on a triangle of a mesh, in the mesh's space: the corners, twice the area as a vector,
+ * and the shares of the corners in it. */
+typedef struct mesh_point {
+    const zt_placed_mesh *placed;
+    const uint32_t *of;
+    vec3 at, v[3], area;
+    double shares[3];
+} mesh_point;
+
+static mesh_point mesh_point_of(const zt_points *w, const zt_batch *rays,
+                                const zt_tracer *tracer, int k) {
+    mesh_point p;
+    p.placed = &tracer->placed[tracer->primitives[w->primitive[k]].placed];
+    const zt_mesh *mesh = p.placed->built->mesh;
+    const zt_origins *from = rays->from;
+    p.of = mesh->triangles + 3 * (int64_t)rays->part[k];
+    p.at = zt_placed_point(p.placed,
+                           (vec3){(double)from->x[k], (double)from->y[k], (double)from->z[k]});
+    for (int i = 0; i < 3; i++) p.v[i] = corner(mesh->positions, p.of, i);
+    vec3 e = vec3_sub(p.v[1], p.v[0]), f = vec3_sub(p.v[2], p.v[0]);
+    p.area = vec3_cross(e, f);
+    vec3 q = vec3_sub(p.at, p.v[0]);
+    double whole = 1 / vec3_dot(p.area, p.area);
+    double s1 = fmin(fmax(vec3_dot(vec3_cross(q, f), p.area) * whole, 0), 1);
+    double s2 = fmin(fmax(vec3_dot(vec3_cross(e, q), p.area) * whole, 0), 1 - s1);
+    p.shares[0] = 1 - s1 - s2;
+    p.shares[1] = s1;
+    p.shares[2] = s2;
+    return p;
+}
+
+static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
+    mesh_point p = mesh_point_of(w, rays, tracer, k);
+    zt_origins *from = rays->from;
+    vec3 gradient = out_of_mesh(p.placed, p.area);
+    double step = vec3_dot(p.area, vec3_sub(p.v[0], p.at)) / vec3_dot(gradient, gradient);
+    vec3 normal = unit(gradient);
+    from->x[k] = (real)((double)from->x[k] + step * gradient.x);
+    from->y[k] = (real)((double)from->y[k] + step * gradient.y);
+    from->z[k] = (real)((double)from->z[k] + step * gradient.z);
+    real largest = real_max(real_max(real_abs(from->x[k]), real_abs(from->y[k])),
+                            real_abs(from->z[k]));
+    from->near[k] = MESH_MARGIN * (largest + p.placed->extent);
+    w->nx[k] = (real)normal.x;
+    w->ny[k] = (real)normal.y;
+    w->nz[k] = (real)normal.z;
+    if (!p.placed->vertex_colors) return;
+    double color[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        const float *c = p.placed->built->mesh->colors + 3 * (int64_t)p.of[i];
+        for (int channel = 0; channel < 3; channel++)
+            color[channel] += p.shares[i] * (double)c[channel];
+    }
+    w->color_r[k] *= (real)color[0];
+    w->color_g[k] *= (real)color[1];
+    w->color_b[k] *= (real)color[2];
+}
+
+/* Bends the normal of a smooth mesh's point, and lifts the point onto the surface that the bent
+ * normals speak of: onto the planes that stand across the corners' normals, each by its share
+ * (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021). Both on the side that
+ * the flat normal, which faces the ray, says. */
+static void smooth_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
+    mesh_point p = mesh_point_of(w, rays, tracer, k);
+    if (!p.placed->smooth) return;
+    zt_origins *from = rays->from;
+    vec3 flat = {(double)w->nx[k], (double)w->ny[k], (double)w->nz[k]};
+    vec3 bent = {0, 0, 0}, lift = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        vec3 own = corner(p.placed->built->mesh->normals, p.of, i);
+        vec3 across = unit(out_of_mesh(p.placed, own));
+        bent = vec3_add(bent, vec3_scale(across, p.shares[i]));
+    }
+    bent = unit(bent);
+    double side = vec3_dot(bent, flat) < 0 ? -1 : 1;
+    /* In the mesh's space, where the corners are: normals there stand across as well. */
+    for (int i = 0; i < 3; i++) {
+        vec3 own = vec3_scale(corner(p.placed->built->mesh->normals, p.of, i), side);
+        double above = fmin(0, vec3_dot(vec3_sub(p.at, p.v[i]), own)) * p.shares[i];
+        lift = vec3_sub(lift, vec3_scale(own, above));
+    }
+    if (!isfinite(bent.x) || !isfinite(lift.x + lift.y + lift.z)) return;
+    vec3 out = xform_vector(&p.placed->place, lift);
+    from->x[k] += (real)out.x;
+    from->y[k] += (real)out.y;
+    from->z[k] += (real)out.z;
+    w->nx[k] = (real)(side * bent.x);
+    w->ny[k] = (real)(side * bent.y);
+    w->nz[k] = (real)(side * bent.z);
+}
+
+/* ---- looks ----------------------------------------------------------------------------------
+ */
+
+static inline real whole(real x) { return sizeof(real) == sizeof(double) ? (real)floor((double)x) : (real)floorf((float)x); }
+
+/* A place a little below the surface decides which cell a point is in, so that a face along the
+ * border of two cells is in one of them. */
+#define BELOW ((real)0x1p-10)
+
+static void weave(zt_points *restrict w, const zt_origins *restrict from,
+                  const zt_tracer *tracer) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        int32_t index = tracer->surfaces[w->primitive[k]].pattern;
+        const zt_weave *v = &tracer->weaves[index > 0 ? index : 0];
+        real px = from->x[k], py = from->y[k], pz = from->z[k];
+        real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
+        real3 rx = v->rows[0], ry = v->rows[1], rz = v->rows[2];
+        real mx = real_dot(rx.x, rx.y, rx.z, nx, ny, nz), my = real_dot(ry.x, ry.y, ry.z, nx, ny, nz),
+             mz = real_dot(rz.x, rz.y, rz.z, nx, ny, nz);
+        real below = BELOW / real_sqrt(real_max(real_dot(mx, my, mz, mx, my, mz), REAL_LEAST));
+        real sum = whole(real_dot(rx.x, rx.y, rx.z, px, py, pz) + v->at.x - below * mx) +
+                   whole(real_dot(ry.x, ry.y, ry.z, px, py, pz) + v->at.y - below * my) +
+                   whole(real_dot(rz.x, rz.y, rz.z, px, py, pz) + v->at.z - below * mz);
+        bool odd = sum - 2 * whole(sum / 2) != 0;
+        bool other = (index >= 0) & odd;
+        w->color_r[k] = other ? v->other.x : w->color_r[k];
+        w->color_g[k] = other ? v->other.y : w->color_g[k];
+        w->color_b[k] = other ? v->other.z : w->color_b[k];
+    }
+}
+
+/* Turns the normals to the side that the rays came from. */
+static void face_rays(zt_points *restrict w, const zt_batch *restrict rays,
+                      zt_origins *restrict from) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
+        bool away = real_dot(nx, ny, nz, rays->dx[k], rays->dy[k], rays->dz[k]) > 0;
+        w->nx[k] = away ? -nx : nx;
+        w->ny[k] = away ? -ny : ny;
+        w->nz[k] = away ? -nz : nz;
+        int32_t inside = away & (w->closed[k] > 0);
+        from->source[k] = w->closed[k] < 0 ? -1 : 2 * w->primitive[k] + inside;
+    }
+}
+
+/* Makes the points what further rays begin at. */
+static void leave_surfaces(zt_points *restrict w, zt_origins *restrict from) {
+    int padded = zt_batch_padded(w->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        real px = from->x[k], py = from->y[k], pz = from->z[k];
+        real largest = real_max(real_max(real_abs(px), real_abs(py)), real_abs(pz));
+        real margin = (largest + from->near[k]) * (MARGIN_ROUNDINGS * REAL_ROUNDING);
+        from->x[k] = px + margin * w->nx[k];
+        from->y[k] = py + margin * w->ny[k];
+        from->z[k] = pz + margin * w->nz[k];
+        from->near[k] = largest * TIE;
+    }
+}
+
+void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_tracer *tracer) {
+    zt_origins *from = rays->from;
+    int32_t list[ZT_BATCH];
+    w->count = rays->count;
+    go_to_ends(w, rays, from);
+    find_surfaces(w, from, tracer);
+    int mesh_count = 0;
+    if (tracer->has_solids)
+        for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT;
+             kind++)
+            solids[kind](w, from, tracer, list, list_kind(list, w, tracer, kind));
+    if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
+    for (int j = 0; j < mesh_count; j++) find_mesh(w, rays, tracer, list[j]);
+    if (tracer->has_patterns) weave(w, from, tracer);
+    face_rays(w, rays, from);
+    leave_surfaces(w, from);
+    for (int j = 0; j < mesh_count; j++) smooth_mesh(w, rays, tracer, list[j]);
+    /* Where rays leave a closed thing's inside they meet it again. */
+    int32_t inside = 0;
+    for (int k = 0; k < w->count; k++) inside |= from->source[k] & 1;
+    if (inside) w->source = -1;
+}

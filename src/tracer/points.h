@@ -1,0 +1,32 @@
+/* The points where rays end: what surface is there, how it looks, and how it shines. */
+#ifndef ZT_TRACER_POINTS_H
+#define ZT_TRACER_POINTS_H
+
+#include "tracer/isa.h"
+#include "tracer/tracer.h"
+
+/* The paths of a batch that hit something, one for each ray: its number among the first rays,
+ * how much of its light arrives, and the surface there. The points themselves stand in the
+ * origins of the rays that go on from them. */
+typedef struct zt_points {
+    alignas(64) int32_t pixel[ZT_BATCH];
+    alignas(64) real weight[ZT_BATCH];
+    alignas(64) int32_t primitive[ZT_BATCH];
+    alignas(64) real nx[ZT_BATCH];
+    alignas(64) real ny[ZT_BATCH];
+    alignas(64) real nz[ZT_BATCH];
+    alignas(64) real color_r[ZT_BATCH];
+    alignas(64) real color_g[ZT_BATCH];
+    alignas(64) real color_b[ZT_BATCH];
+    alignas(64) real reflectivity[ZT_BATCH];
+    alignas(64) int32_t closed[ZT_BATCH]; /* as in zt_surface */
+    int32_t source; /* the primitive that they all lie on, none of them inside it, or -1 */
+    int count;
+} zt_points;
+
+/* Moves the rays of a batch, all of which have hit something, to where they end, and finds the
+ * surfaces there: sets the origins (a few roundings off the surface, on the side that the rays
+ * came from, with their sources) and the points but for pixel and weight. */
+void ZT_KERNEL_NAME(zt_points_find)(zt_points *points, zt_batch *rays, const zt_tracer *tracer);
+
+#endif

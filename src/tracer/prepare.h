@@ -1,0 +1,13 @@
+/* A scene is made ready for rays. */
+#ifndef ZT_TRACER_PREPARE_H
+#define ZT_TRACER_PREPARE_H
+
+#include "tracer/tracer.h"
+
+/* Makes the tracer of a precision, and the extents of its primitives, in the arena. Things that
+ * are degenerate have nothing to hit and are left out. */
+zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
+                                   int32_t *extent_count, const zt_scene *scene,
+                                   zt_meshes *meshes, zt_arena *arena);
+
+#endif
