@@ -42,13 +42,12 @@ static inline int32_t leaving(int32_t source, int32_t index) {
             rays->hit[i] = ((t > near) & (t * (1 + TIE) + near < rays->t[i])) ? 0 : hit;       \
         }                                                                                      \
     }                                                                                          \
-    static void kind##_listed(zt_batch *restrict rays, const zt_origins *restrict from,        \
-                              const zt_primitive *p, int32_t index,                            \
-                              const int32_t *restrict list, real tie, bool any) {              \
+    static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,        \
+                             const zt_primitive *p, int32_t index, int first, real tie,        \
+                             bool any) {                                                       \
         const zt_primitive own = *p;                                                           \
         const real before = any ? TIE : tie, after = any ? TIE : -tie;                         \
-        WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {                                   \
-            int32_t i = list[j];                                                               \
+        WIDE_LOOP for (int i = first; i < first + ZT_BATCH_LANES; i++) {                       \
             real t = DISTANCE(kind, i), nearest = rays->t[i], near = from->near[i];            \
             int32_t hit = rays->hit[i];                                                        \
             real room = (t + near / TIE) * (index > hit ? before : after);                     \
@@ -82,20 +81,14 @@ typedef void loop(zt_batch *restrict rays, const zt_origins *restrict from,
 static loop *const nearest_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(nearest);
 static loop *const any_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(any);
 
-typedef void listed_loop(zt_batch *restrict rays, const zt_origins *restrict from,
-                         const zt_primitive *p, int32_t index, const int32_t *restrict list,
-                         real tie, bool any);
-static listed_loop *const listed_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(listed);
+typedef void lanes_loop(zt_batch *restrict rays, const zt_origins *restrict from,
+                        const zt_primitive *p, int32_t index, int first, real tie, bool any);
+static lanes_loop *const lanes_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(lanes);
 
-void ZT_KERNEL_NAME(zt_meet_listed)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
-                                    const int32_t *list, int count, bool any) {
+void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
+                                   int first, bool any) {
     const zt_primitive *p = &tracer->primitives[index];
-    for (int first = 0; first < count; first += ZT_BATCH_LANES) {
-        int32_t lanes[ZT_BATCH_LANES]; /* filled up with the first; twice the same is the same */
-        for (int j = 0; j < ZT_BATCH_LANES; j++)
-            lanes[j] = list[first + j < count ? first + j : first];
-        listed_loops[p->kind](rays, rays->from, p, index, lanes, tracer->tie, any);
-    }
+    lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie, any);
 }
 
 /* Whether a primitive can be met by a ray of a bundle. What all rays leave, and none inwards, is

@@ -23,9 +23,9 @@ void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
 /* False only where no ray of a bundle meets anything. */
 bool ZT_KERNEL_NAME(zt_may_meet)(const zt_bundle *bundle, const zt_tracer *tracer);
 
-/* For one primitive that is not a mesh, and the rays whose numbers are listed: their nearest
- * hits; with `any`, of shadow rays. */
-void ZT_KERNEL_NAME(zt_meet_listed)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
-                                    const int32_t *list, int count, bool any);
+/* For one primitive that is not a mesh, and the group of lanes that begins with ray number
+ * `first`: their nearest hits; with `any`, of shadow rays. */
+void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
+                                   int first, bool any);
 
 #endif

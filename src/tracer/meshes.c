@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/diag.h"
+
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
@@ -31,9 +33,8 @@ void zt_meshes_close(zt_meshes **slot) {
     zt_meshes *m = *slot;
     if (!m) return;
     for (int32_t i = 0; i < m->mesh_count; i++) {
-        zt_bvh_free(&m->built[i].triangles);
-        zt_bvh_free(&m->built[i].boxes);
-        free(m->built[i].triangle_boxes);
+        zt_bvh_free(&m->built[i].bvh);
+        zt_clusters_free(&m->built[i].clusters);
         free(m->built[i].hull);
     }
     zt_bvh_free(&m->crowd);
@@ -52,44 +53,35 @@ static zt_status build_hull(zt_built_mesh *b) {
     return room ? ZT_OK : ZT_EMEMORY;
 }
 
-/* The boxes are grown by the roundings of rays that are made single precision near the mesh. */
-static zt_status build_boxes(zt_built_mesh *b, zt_bvh_builder *builder) {
+/* The boxes are grown by the roundings, in single precision, of rays that begin near the mesh
+ * and of their intersection with what is within. */
+static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
     const zt_mesh *mesh = b->mesh;
+    ZT_TRY(zt_clusters_build(&b->clusters, mesh->positions, mesh->triangles,
+                             mesh->triangle_count));
     const zt_bvh_box *all = &b->hull->boxes[1];
-    float room = 0;
+    float size = 0;
     for (int axis = 0; axis < 3; axis++)
-        room = fmaxf(room, fmaxf(fabsf(all->low[axis]), fabsf(all->high[axis])) * 0x1p-20f);
-    b->triangle_boxes = malloc((size_t)mesh->triangle_count * sizeof *b->triangle_boxes + 1);
-    if (!b->triangle_boxes) return ZT_EMEMORY;
-    for (int32_t i = 0; i < mesh->triangle_count; i++) {
-        zt_bvh_box *box = &b->triangle_boxes[i];
+        size = fmaxf(size, fmaxf(fabsf(all->low[axis]), fabsf(all->high[axis])));
+    for (int32_t i = 0; i < b->clusters.count; i++)
         for (int axis = 0; axis < 3; axis++) {
-            float v[3];
-            for (int k = 0; k < 3; k++)
-                v[k] =
-                    mesh->positions[3 * (int64_t)mesh->triangles[3 * (int64_t)i + k] + axis];
-            box->low[axis] = fminf(v[0], fminf(v[1], v[2])) - room;
-            box->high[axis] = fmaxf(v[0], fmaxf(v[1], v[2])) + room;
+            b->clusters.boxes[i].low[axis] -= size * 0x1p-19f;
+            b->clusters.boxes[i].high[axis] += size * 0x1p-19f;
         }
-    }
-    return zt_bvh_of_boxes(&b->boxes, builder, b->triangle_boxes, mesh->triangle_count);
+    return zt_bvh_of_boxes(&b->bvh, builder, b->clusters.boxes, b->clusters.count,
+                           ZT_BVH_LASTING);
 }
 
-zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t index,
-                          bool boxes) {
+zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t index) {
     zt_built_mesh *b = &m->built[index];
-    const zt_mesh *mesh = b->mesh;
     *built = b;
     if (!b->hull) ZT_TRY(build_hull(b));
-    if (boxes) return b->boxes ? ZT_OK : build_boxes(b, m->builder);
-    if (b->triangles) return ZT_OK;
-    return zt_bvh_of_triangles(&b->triangles, m->builder, mesh->positions, mesh->vertex_count,
-                               mesh->triangles, mesh->triangle_count);
+    return b->bvh ? ZT_OK : build_bvh(b, m->builder);
 }
 
 zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, const zt_bvh_box *boxes,
                           int32_t count) {
-    ZT_TRY(zt_bvh_of_boxes(&m->crowd, m->builder, boxes, count));
+    ZT_TRY(zt_bvh_of_boxes(&m->crowd, m->builder, boxes, count, ZT_BVH_PASSING));
     *crowd = m->crowd;
     return ZT_OK;
 }

@@ -10,6 +10,7 @@
 
 #include "scene/mesh.h"
 #include "tracer/bvh.h"
+#include "tracer/clusters.h"
 #include "tracer/hull.h"
 
 typedef struct zt_meshes zt_meshes;
@@ -20,18 +21,17 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
                          int threads, zt_listener listener);
 void zt_meshes_close(zt_meshes **meshes);
 
-/* What is built of one mesh, `origin` left out: the hull, and the hierarchy that is asked for:
- * over its triangles, or over boxes around them. The other one may be NULL. */
+/* What is built of one mesh, `origin` left out: clusters of its triangles, the hierarchy over
+ * their boxes, and the hull. */
 typedef struct zt_built_mesh {
     const zt_mesh *mesh;
+    zt_clusters clusters;
+    zt_bvh *bvh;
     zt_hull *hull;
-    zt_bvh *triangles, *boxes;
-    zt_bvh_box *triangle_boxes;
 } zt_built_mesh;
-zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *meshes, int32_t mesh,
-                          bool boxes);
+zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *meshes, int32_t mesh);
 
-/* The hierarchy over boxes that serves one frame; they must outlive the frame. */
+/* The hierarchy over boxes that serves one frame. */
 zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *meshes, const zt_bvh_box *boxes,
                           int32_t count);
 

@@ -79,8 +79,7 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_scene *s
             zt_placed_mesh *placed = &all->placed[all->placed_count];
             if (!ZT_REAL_NAME(zt_prepare_mesh)(&m, placed, &scene->meshes[object->mesh])) continue;
             m.primitive->placed = all->placed_count++;
-            ZT_TRY(zt_meshes_build(&placed->built, meshes, object->mesh,
-                                   sizeof(real) == sizeof(double)));
+            ZT_TRY(zt_meshes_build(&placed->built, meshes, object->mesh));
         } else if (!ZT_REAL_NAME(zt_prepare_shape)(&m)) {
             continue;
         }

@@ -1,18 +1,20 @@
 /* Rays go to a mesh's space and are asked about there, first against its hull, many at a time,
- * then in its hierarchy. In single precision the hierarchy is over triangles and finds the one
- * that is met; how far away that is, is worked out here in double precision. In double precision
- * it is over boxes, and the triangles are intersected here. Compiled once for each width of
- * instructions and each precision (tracer/isa.h). */
+ * then in its hierarchy, which tells clusters of triangles to intersect. Compiled once for each
+ * width of instructions and each precision (tracer/isa.h). */
 #include "tracer/search.h"
 
 #include <math.h>
 #include <string.h>
 
-#define ALL_DOUBLE (sizeof(real) == sizeof(double))
-
 /* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
- * distances. */
+ * distances; and how long before the box around a mesh its rays begin, so that they begin before
+ * all that is in it. */
 #define LOOK_FURTHER (1 + 0x1p-18f)
+#define BEFORE       (1 - (real)0x1p-6)
+
+/* How many times a hull is halved for a look at it, and from how many rays on it is quicker to
+ * ask all of a group about one triangle than one about all triangles of a cluster. */
+enum { HULL_LEVEL = 3, LANES_WORTH = 5 };
 
 /* Some rays of a batch on their way through a mesh or a crowd. */
 typedef struct search {
@@ -28,7 +30,9 @@ typedef struct search {
     alignas(64) real dx[ZT_BATCH];
     alignas(64) real dy[ZT_BATCH];
     alignas(64) real dz[ZT_BATCH];
-    real begin[ZT_BATCH]; /* where, along each of them, the hierarchy's rays begin */
+    real begin[ZT_BATCH]; /* how far along the batch's they begin */
+    alignas(64) real t[ZT_BATCH];       /* the nearest hit so far, along the batch's */
+    alignas(64) int32_t part[ZT_BATCH]; /* and of which triangle, or -1 */
     zt_bvh_rays packed;
 } search;
 
@@ -136,11 +140,12 @@ static void meet_halves(lanes *restrict l, const zt_bvh_box *boxes, int index, i
 }
 
 /* Fills the hierarchy's rays with those that meet the hull; the list and the rays in the mesh's
- * space shrink to them. Doubles begin where they enter the box around it, so that floats keep
- * what counts. */
+ * space shrink to them. They begin before they enter the box around it, so that single precision
+ * keeps what counts. */
 static void pack(search *restrict s, int count) {
     const zt_bvh_box *boxes = s->placed->built->hull->boxes;
     zt_bvh_rays *restrict packed = &s->packed;
+    const zt_origins *from = s->rays->from;
     int kept = 0;
     for (int first = 0; first < count; first += ZT_BATCH_LANES) {
         lanes l;
@@ -148,28 +153,32 @@ static void pack(search *restrict s, int count) {
         enter_lanes(&l, s, first);
         memset(l.meets, 0, sizeof l.meets);
         meet_box(&l, &boxes[1]);
-        memcpy(begin, l.enter, sizeof begin);
         if (!any_meets(&l)) continue;
-        meet_halves(&l, boxes, 1, ZT_HULL_LEVELS - 1);
+        memcpy(begin, l.enter, sizeof begin);
+        meet_halves(&l, boxes, 1, HULL_LEVEL);
         for (int j = 0; j < ZT_BATCH_LANES && first + j < count; j++) {
-            int from = first + j;
-            real t0 = ALL_DOUBLE && begin[j] > 0 ? begin[j] : 0;
-            real t = s->rays->t[s->list[from]];
-            s->list[kept] = s->list[from];
-            s->ox[kept] = s->ox[from];
-            s->oy[kept] = s->oy[from];
-            s->oz[kept] = s->oz[from];
-            s->dx[kept] = s->dx[from];
-            s->dy[kept] = s->dy[from];
-            s->dz[kept] = s->dz[from];
+            int own = first + j;
+            int32_t i = s->list[own];
+            real t0 = begin[j] * BEFORE;
+            t0 = t0 > 0 && t0 < REAL_INFINITY ? t0 : 0;
+            real t = s->rays->t[i];
+            s->list[kept] = i;
             s->begin[kept] = t0;
-            packed->ox[kept] = (float)(s->ox[from] + t0 * s->dx[from]);
-            packed->oy[kept] = (float)(s->oy[from] + t0 * s->dy[from]);
-            packed->oz[kept] = (float)(s->oz[from] + t0 * s->dz[from]);
-            packed->dx[kept] = (float)s->dx[from];
-            packed->dy[kept] = (float)s->dy[from];
-            packed->dz[kept] = (float)s->dz[from];
-            packed->far[kept] = (float)(t - t0) * LOOK_FURTHER;
+            s->t[kept] = s->any ? (t - from->near[i]) / (1 + TIE) : t;
+            s->part[kept] = -1;
+            s->dx[kept] = s->dx[own];
+            s->dy[kept] = s->dy[own];
+            s->dz[kept] = s->dz[own];
+            s->ox[kept] = s->ox[own] + t0 * s->dx[kept];
+            s->oy[kept] = s->oy[own] + t0 * s->dy[kept];
+            s->oz[kept] = s->oz[own] + t0 * s->dz[kept];
+            packed->ox[kept] = (float)s->ox[kept];
+            packed->oy[kept] = (float)s->oy[kept];
+            packed->oz[kept] = (float)s->oz[kept];
+            packed->dx[kept] = (float)s->dx[kept];
+            packed->dy[kept] = (float)s->dy[kept];
+            packed->dz[kept] = (float)s->dz[kept];
+            packed->far[kept] = (float)(s->t[kept] - t0) * LOOK_FURTHER;
             kept += l.meets[j];
         }
     }
@@ -179,94 +188,71 @@ static void pack(search *restrict s, int count) {
 /* ---- triangles ------------------------------------------------------------------------------
  */
 
-typedef struct corners {
-    real3 v[3];
-} corners;
+static inline real3 corner_of(const zt_cluster *c, int corner, int k) {
+    return (real3){(real)c->corners[corner][0][k], (real)c->corners[corner][1][k],
+                   (real)c->corners[corner][2][k]};
+}
 
-static inline corners corners_of(const zt_mesh *mesh, int32_t triangle) {
-    corners c;
-    const uint32_t *of = mesh->triangles + 3 * (int64_t)triangle;
-    for (int k = 0; k < 3; k++) {
-        const float *p = mesh->positions + 3 * (int64_t)of[k];
-        c.v[k] = (real3){(real)p[0], (real)p[1], (real)p[2]};
+/* One triangle, a group of lanes. Of equally near triangles the first one counts. */
+static inline void meet_lanes(search *restrict s, const zt_cluster *c, int k, int first) {
+    const real3 v0 = corner_of(c, 0, k), v1 = corner_of(c, 1, k), v2 = corner_of(c, 2, k);
+    const int32_t triangle = c->triangles[k];
+    WIDE_LOOP for (int j = first; j < first + ZT_BATCH_LANES; j++) {
+        real t = s->begin[j] + zt_triangle_meet(v0, v1, v2, s->ox[j], s->oy[j], s->oz[j],
+                                                s->dx[j], s->dy[j], s->dz[j]);
+        real nearest = s->t[j];
+        int32_t part = s->part[j];
+        bool nearer = (t < nearest) | ((t == nearest) & (triangle < part));
+        s->t[j] = nearer ? t : nearest;
+        s->part[j] = nearer ? triangle : part;
     }
-    return c;
 }
 
-/* Takes a hit of listed ray j; of the same mesh the nearest counts, and the first of equals. */
-static void take(search *s, int j, real t, int32_t triangle) {
-    zt_batch *rays = s->rays;
-    int32_t i = s->list[j], hit = rays->hit[i];
-    real nearest = rays->t[i];
-    bool nearer = t < nearest || (t == nearest && (hit == s->index ? triangle < rays->part[i]
-                                                                   : s->index < hit));
-    if (!nearer) return;
-    rays->t[i] = t;
-    rays->hit[i] = s->index;
-    rays->part[i] = triangle;
+/* One ray, all triangles of a cluster. */
+static inline void meet_cluster(search *restrict s, const zt_cluster *c, int j) {
+    const real ox = s->ox[j], oy = s->oy[j], oz = s->oz[j];
+    const real dx = s->dx[j], dy = s->dy[j], dz = s->dz[j], begin = s->begin[j];
+    real t[ZT_CLUSTER];
+    for (int k = 0; k < ZT_CLUSTER; k++)
+        t[k] = begin + zt_triangle_meet(corner_of(c, 0, k), corner_of(c, 1, k),
+                                        corner_of(c, 2, k), ox, oy, oz, dx, dy, dz);
+    for (int k = 0; k < ZT_CLUSTER; k++) {
+        bool nearer =
+            t[k] < s->t[j] || (t[k] == s->t[j] && c->triangles[k] < s->part[j]);
+        s->part[j] = nearer ? c->triangles[k] : s->part[j];
+        s->t[j] = nearer ? t[k] : s->t[j];
+    }
 }
 
-/* Where a ray meets the plane of a triangle; what the hierarchy said where that is no place in
- * front of it, as for a ray within the plane. */
-static inline double plane_distance(const search *s, int j, int32_t triangle, float about) {
-    const zt_batch *rays = s->rays;
-    const zt_placed_mesh *m = s->placed;
-    int32_t i = s->list[j];
-    corners c = corners_of(m->built->mesh, triangle);
-    vec3 v0 = {(double)c.v[0].x, (double)c.v[0].y, (double)c.v[0].z};
-    vec3 v1 = {(double)c.v[1].x, (double)c.v[1].y, (double)c.v[1].z};
-    vec3 v2 = {(double)c.v[2].x, (double)c.v[2].y, (double)c.v[2].z};
-    vec3 n = vec3_cross(vec3_sub(v1, v0), vec3_sub(v2, v0));
-    vec3 o = zt_placed_point(m, (vec3){(double)rays->from->x[i], (double)rays->from->y[i],
-                                       (double)rays->from->z[i]});
-    vec3 d = {(double)rays->dx[i], (double)rays->dy[i], (double)rays->dz[i]};
-    vec3 e = {vec3_dot(m->rows[0], d), vec3_dot(m->rows[1], d), vec3_dot(m->rows[2], d)};
-    double t = vec3_dot(n, vec3_sub(v0, o)) / vec3_dot(n, e);
-    return t > 0 && t <= (double)about * 1.001 ? t : (double)about;
-}
-
-/* Intersects some rays with one triangle, in double precision. */
-static void visit_triangle(void *user, int32_t triangle, const int32_t *numbers, int count) {
+static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     search *s = user;
-    corners c = corners_of(s->placed->built->mesh, triangle);
-    for (int k = 0; k < count; k++) {
-        int j = numbers[k];
-        real t = zt_triangle_meet(c.v[0], c.v[1], c.v[2], s->ox[j], s->oy[j], s->oz[j],
-                                  s->dx[j], s->dy[j], s->dz[j]);
-        int32_t i = s->list[j];
-        if (!(t <= s->rays->t[i])) continue;
-        if (s->any) {
-            if (!(t * (1 + TIE) + s->rays->from->near[i] < s->rays->t[i])) continue;
-            s->rays->hit[i] = 0;
-            s->packed.far[j] = -1;
-        } else {
-            take(s, j, t, triangle);
-            s->packed.far[j] = (float)(s->rays->t[i] - s->begin[j]) * LOOK_FURTHER;
-        }
+    const zt_cluster *c = &s->placed->built->clusters.clusters[box];
+    if (__builtin_popcount(set) >= LANES_WORTH) {
+        for (int k = 0; k < ZT_CLUSTER; k++) meet_lanes(s, c, k, first);
+    } else {
+        for (uint32_t left = set; left; left &= left - 1)
+            meet_cluster(s, c, first + __builtin_ctz(left));
+    }
+    for (int j = first; j < first + ZT_BATCH_LANES; j++) {
+        bool done = s->any & (s->part[j] >= 0);
+        s->packed.far[j] = done ? -1 : (float)(s->t[j] - s->begin[j]) * LOOK_FURTHER;
     }
 }
 
 /* The listed rays, `count` of them, against one mesh. */
 static void search_mesh(search *s, int count, zt_bvh_kind kind) {
-    const zt_built_mesh *built = s->placed->built;
-    enter_mesh(s, s->rays, count);
+    zt_batch *rays = s->rays;
+    enter_mesh(s, rays, count);
     pack(s, count);
-    zt_bvh_rays *packed = &s->packed;
-    if (packed->count == 0) return;
-    if (ALL_DOUBLE) {
-        zt_bvh_look(built->boxes, packed, kind, visit_triangle, s);
-    } else if (s->any) {
-        for (int j = 0; j < packed->count; j++)
-            packed->far[j] = (float)s->rays->t[s->list[j]] * (float)(1 - TIE);
-        zt_bvh_any(built->triangles, packed, kind);
-        for (int j = 0; j < packed->count; j++)
-            if (packed->triangle[j] >= 0) s->rays->hit[s->list[j]] = 0;
-    } else {
-        zt_bvh_nearest(built->triangles, packed, kind);
-        for (int j = 0; j < packed->count; j++)
-            if (packed->triangle[j] >= 0)
-                take(s, j, (real)plane_distance(s, j, packed->triangle[j], packed->far[j]),
-                     packed->triangle[j]);
+    if (s->packed.count == 0) return;
+    zt_bvh_look(s->placed->built->bvh, &s->packed, kind, visit_cluster, s);
+    for (int j = 0; j < s->packed.count; j++) {
+        int32_t i = s->list[j], hit = rays->hit[i];
+        if (s->part[j] < 0) continue;
+        if (s->t[j] == rays->t[i] && hit >= 0 && hit < s->index) continue;
+        rays->t[i] = s->t[j];
+        rays->hit[i] = s->index;
+        rays->part[i] = s->part[j];
     }
 }
 
@@ -278,34 +264,33 @@ typedef struct crowd_search {
     const zt_tracer *tracer;
     bool any;
     zt_bvh_kind kind;
-    int32_t list[ZT_BATCH];
     real begin[ZT_BATCH]; /* where, along each ray, the hierarchy's begins */
     zt_bvh_rays packed;
 } crowd_search;
 
-/* Some rays against one primitive of a crowd. Shadow rays are asked for their nearest hit too,
- * which costs them nothing. */
-static void visit_primitive(void *user, int32_t box, const int32_t *numbers, int count) {
+/* Some rays against one primitive of a crowd. Others of their group are asked as well, since it
+ * costs nothing. Shadow rays are asked for their nearest hit. */
+static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     crowd_search *c = user;
-    int32_t index = c->tracer->crowd_primitives[box], list[ZT_BATCH];
+    zt_batch *rays = c->rays;
+    int32_t index = c->tracer->crowd_primitives[box];
     const zt_primitive *p = &c->tracer->primitives[index];
-    for (int k = 0; k < count; k++) list[k] = c->list[numbers[k]];
     if (p->kind == ZT_PRIMITIVE_MESH) {
         search s;
-        s.rays = c->rays;
+        int count = 0;
+        s.rays = rays;
         s.placed = &c->tracer->placed[p->placed];
         s.index = index;
         s.any = c->any;
-        memcpy(s.list, list, (size_t)count * sizeof *list);
+        for (uint32_t left = set; left; left &= left - 1)
+            s.list[count++] = first + __builtin_ctz(left);
         search_mesh(&s, count, c->kind);
     } else {
-        ZT_KERNEL_NAME(zt_meet_listed)(c->rays, c->tracer, index, list, count, c->any);
+        ZT_KERNEL_NAME(zt_meet_lanes)(rays, c->tracer, index, first, c->any);
     }
-    for (int k = 0; k < count; k++) {
-        int32_t i = list[k];
-        bool done = c->any && c->rays->hit[i] >= 0;
-        real far = c->rays->t[i] - c->begin[numbers[k]];
-        c->packed.far[numbers[k]] = done ? -1 : (float)far * LOOK_FURTHER;
+    for (int i = first; i < first + ZT_BATCH_LANES; i++) {
+        bool done = c->any & (rays->hit[i] >= 0);
+        c->packed.far[i] = done ? -1 : (float)(rays->t[i] - c->begin[i]) * LOOK_FURTHER;
     }
 }
 
@@ -325,25 +310,23 @@ static void search_crowd(zt_batch *rays, const zt_tracer *tracer, bool any, zt_b
     c.tracer = tracer;
     c.any = any;
     c.kind = kind;
-    int kept = 0;
     const zt_origins *from = rays->from;
+    c.packed.count = rays->count;
     for (int i = 0; i < rays->count; i++) {
         real ox = from->x[i], oy = from->y[i], oz = from->z[i];
         real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        real begin = ALL_DOUBLE ? enter_box(&tracer->crowd_box, ox, oy, oz, dx, dy, dz) : 0;
-        c.list[kept] = i;
-        c.begin[kept] = begin;
-        c.packed.ox[kept] = (float)(ox + begin * dx);
-        c.packed.oy[kept] = (float)(oy + begin * dy);
-        c.packed.oz[kept] = (float)(oz + begin * dz);
-        c.packed.dx[kept] = (float)dx;
-        c.packed.dy[kept] = (float)dy;
-        c.packed.dz[kept] = (float)dz;
-        c.packed.far[kept] = (float)(rays->t[i] - begin) * LOOK_FURTHER;
-        kept += !any || (rays->hit[i] < 0 && rays->t[i] > 0);
+        real begin = enter_box(&tracer->crowd_box, ox, oy, oz, dx, dy, dz) * BEFORE;
+        bool looks = !any || (rays->hit[i] < 0 && rays->t[i] > 0);
+        c.begin[i] = begin;
+        c.packed.ox[i] = (float)(ox + begin * dx);
+        c.packed.oy[i] = (float)(oy + begin * dy);
+        c.packed.oz[i] = (float)(oz + begin * dz);
+        c.packed.dx[i] = (float)dx;
+        c.packed.dy[i] = (float)dy;
+        c.packed.dz[i] = (float)dz;
+        c.packed.far[i] = looks ? (float)(rays->t[i] - begin) * LOOK_FURTHER : -1;
     }
-    c.packed.count = kept;
-    if (kept > 0) zt_bvh_look(tracer->crowd, &c.packed, kind, visit_primitive, &c);
+    zt_bvh_look(tracer->crowd, &c.packed, kind, visit_primitive, &c);
 }
 
 /* ---- both -----------------------------------------------------------------------------------
