@@ -27,6 +27,7 @@ set(header_animation keyframe)
 set(header_explain keyframe)
 set(header_output encode)
 set(header_drawing encode)
+set(header_precision tracer)
 set(header_renderer sequence)
 set(header_zoetrope cli)
 

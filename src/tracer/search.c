@@ -6,15 +6,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "tracer/triangles.h"
+
 /* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
  * distances; and how long before the box around a mesh its rays begin, so that they begin before
  * all that is in it. */
 #define LOOK_FURTHER (1 + 0x1p-18f)
 #define BEFORE       (1 - (real)0x1p-6)
 
-/* How many times a hull is halved for a look at it, and from how many rays on it is quicker to
- * ask all of a group about one triangle than one about all triangles of a cluster. */
-enum { HULL_LEVEL = 3, LANES_WORTH = 5 };
+/* How many times a hull is halved for a look at it. */
+enum { HULL_LEVEL = 3 };
 
 /* Some rays of a batch on their way through a mesh or a crowd. */
 typedef struct search {
@@ -31,8 +32,9 @@ typedef struct search {
     alignas(64) real dy[ZT_BATCH];
     alignas(64) real dz[ZT_BATCH];
     real begin[ZT_BATCH]; /* how far along the batch's they begin */
-    alignas(64) real t[ZT_BATCH];       /* the nearest hit so far, along the batch's */
+    alignas(64) real t[ZT_BATCH];       /* the nearest hit so far */
     alignas(64) int32_t part[ZT_BATCH]; /* and of which triangle, or -1 */
+    zt_leaning_rays leaning;
     zt_bvh_rays packed;
 } search;
 
@@ -164,7 +166,7 @@ static void pack(search *restrict s, int count) {
             real t = s->rays->t[i];
             s->list[kept] = i;
             s->begin[kept] = t0;
-            s->t[kept] = s->any ? (t - from->near[i]) / (1 + TIE) : t;
+            s->t[kept] = (s->any ? (t - from->near[i]) / (1 + TIE) : t) - t0;
             s->part[kept] = -1;
             s->dx[kept] = s->dx[own];
             s->dy[kept] = s->dy[own];
@@ -178,7 +180,7 @@ static void pack(search *restrict s, int count) {
             packed->dx[kept] = (float)s->dx[kept];
             packed->dy[kept] = (float)s->dy[kept];
             packed->dz[kept] = (float)s->dz[kept];
-            packed->far[kept] = (float)(s->t[kept] - t0) * LOOK_FURTHER;
+            packed->far[kept] = (float)s->t[kept] * LOOK_FURTHER;
             kept += l.meets[j];
         }
     }
@@ -188,54 +190,13 @@ static void pack(search *restrict s, int count) {
 /* ---- triangles ------------------------------------------------------------------------------
  */
 
-static inline real3 corner_of(const zt_cluster *c, int corner, int k) {
-    return (real3){(real)c->corners[corner][0][k], (real)c->corners[corner][1][k],
-                   (real)c->corners[corner][2][k]};
-}
-
-/* One triangle, a group of lanes. Of equally near triangles the first one counts. */
-static inline void meet_lanes(search *restrict s, const zt_cluster *c, int k, int first) {
-    const real3 v0 = corner_of(c, 0, k), v1 = corner_of(c, 1, k), v2 = corner_of(c, 2, k);
-    const int32_t triangle = c->triangles[k];
-    WIDE_LOOP for (int j = first; j < first + ZT_BATCH_LANES; j++) {
-        real t = s->begin[j] + zt_triangle_meet(v0, v1, v2, s->ox[j], s->oy[j], s->oz[j],
-                                                s->dx[j], s->dy[j], s->dz[j]);
-        real nearest = s->t[j];
-        int32_t part = s->part[j];
-        bool nearer = (t < nearest) | ((t == nearest) & (triangle < part));
-        s->t[j] = nearer ? t : nearest;
-        s->part[j] = nearer ? triangle : part;
-    }
-}
-
-/* One ray, all triangles of a cluster. */
-static inline void meet_cluster(search *restrict s, const zt_cluster *c, int j) {
-    const real ox = s->ox[j], oy = s->oy[j], oz = s->oz[j];
-    const real dx = s->dx[j], dy = s->dy[j], dz = s->dz[j], begin = s->begin[j];
-    real t[ZT_CLUSTER];
-    for (int k = 0; k < ZT_CLUSTER; k++)
-        t[k] = begin + zt_triangle_meet(corner_of(c, 0, k), corner_of(c, 1, k),
-                                        corner_of(c, 2, k), ox, oy, oz, dx, dy, dz);
-    for (int k = 0; k < ZT_CLUSTER; k++) {
-        bool nearer =
-            t[k] < s->t[j] || (t[k] == s->t[j] && c->triangles[k] < s->part[j]);
-        s->part[j] = nearer ? c->triangles[k] : s->part[j];
-        s->t[j] = nearer ? t[k] : s->t[j];
-    }
-}
-
 static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     search *s = user;
-    const zt_cluster *c = &s->placed->built->clusters.clusters[box];
-    if (__builtin_popcount(set) >= LANES_WORTH) {
-        for (int k = 0; k < ZT_CLUSTER; k++) meet_lanes(s, c, k, first);
-    } else {
-        for (uint32_t left = set; left; left &= left - 1)
-            meet_cluster(s, c, first + __builtin_ctz(left));
-    }
-    for (int j = first; j < first + ZT_BATCH_LANES; j++) {
-        bool done = s->any & (s->part[j] >= 0);
-        s->packed.far[j] = done ? -1 : (float)(s->t[j] - s->begin[j]) * LOOK_FURTHER;
+    const zt_cluster *cluster = &s->placed->built->clusters.clusters[box];
+    for (; set; set &= set - 1) {
+        int j = first + __builtin_ctz(set);
+        if (zt_meet_cluster(&s->t[j], &s->part[j], cluster, &s->leaning, j))
+            s->packed.far[j] = s->any ? -1 : (float)s->t[j] * LOOK_FURTHER;
     }
 }
 
@@ -245,12 +206,14 @@ static void search_mesh(search *s, int count, zt_bvh_kind kind) {
     enter_mesh(s, rays, count);
     pack(s, count);
     if (s->packed.count == 0) return;
+    zt_lean_rays(&s->leaning, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->packed.count);
     zt_bvh_look(s->placed->built->bvh, &s->packed, kind, visit_cluster, s);
     for (int j = 0; j < s->packed.count; j++) {
         int32_t i = s->list[j], hit = rays->hit[i];
         if (s->part[j] < 0) continue;
-        if (s->t[j] == rays->t[i] && hit >= 0 && hit < s->index) continue;
-        rays->t[i] = s->t[j];
+        real t = s->begin[j] + s->t[j];
+        if (t == rays->t[i] && hit >= 0 && hit < s->index) continue;
+        rays->t[i] = t;
         rays->hit[i] = s->index;
         rays->part[i] = s->part[j];
     }

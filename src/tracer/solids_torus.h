@@ -41,11 +41,7 @@ static inline torus_extremes torus_extremes_of(real p, real q) {
     for (int i = 0; i < TORUS_CUBIC_STEPS; i++)
         x = (2 * x * x * x + size) / (3 * x * x + p + REAL_LEAST);
     real square = -p - (real)0.75 * x * x, half = real_sqrt(real_max(square, 0));
-<<<<<<< HEAD
     real middle = half > 0 ? (real)0.5 * x : -x;
-=======
-    real middle = square > 0 ? (real)0.5 * x : -x;
->>>>>>> 48eaba1 (tracer: kernels in single and double precision, solids, patterns, smooth meshes; surfaces that a ray leaves are left out exactly)
     bool turned = q < 0;
     torus_extremes e;
     e.low0 = turned ? -middle - half : -x;
@@ -71,7 +67,6 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     torus_extremes e =
         torus_extremes_of(g2 - 1 - tube * tube + 2 * r.ez * r.ez, 2 * r.gz * r.ez);
     real h_low = torus_height_at(&r, tube, low).h, h0 = torus_height_at(&r, tube, e.low0).h,
-<<<<<<< HEAD
          h1 = torus_height_at(&r, tube, e.high).h, h2 = torus_height_at(&r, tube, e.low1).h,
          h_end = torus_height_at(&r, tube, reach).h;
     /* Of a ray that begins on the surface, which crossing that is shows by the extremes around;
@@ -97,29 +92,6 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     bool nearer_a = ha < hb;
     real from = nearer_a ? a : b, to = nearer_a ? b : a, h_from = nearer_a ? ha : hb;
     real s = from + (to - from) * real_sqrt(h_from / (ha + hb));
-=======
-         h1 = torus_height_at(&r, tube, e.high).h, h2 = torus_height_at(&r, tube, e.low1).h;
-    /* Of a ray that begins on the surface, which crossing that is shows by the extremes around;
-     * what penetrates or sticks out by rounding only does not count. */
-    bool on = leaving != 0;
-    bool inside = (leaving < 0) | ((leaving == 0) & (k <= reach) & (h_low < 0));
-    real rounding = on ? 8 * REAL_ROUNDING * tube : 0;
-    real end1 = on ? (real)0.5 * (e.low0 + e.high) : e.high;
-    real end2 = on ? (real)0.5 * (e.high + e.low1) : e.low1;
-    bool enters0 = (!inside) & (!on) & (low < e.low0) & (h0 < 0);
-    bool enters2 = (!inside) & (!enters0) & (low < end2) & (h2 < -rounding);
-    bool leaves1 = inside & (low < end1) & (h1 > rounding);
-    real a = enters0   ? low
-             : enters2 ? real_max(low, e.high)
-                       : real_max(low, leaves1 ? e.low0 : e.low1);
-    real b = enters0 ? e.low0 : enters2 ? e.low1 : leaves1 ? e.high : real_max(reach, a);
-    real sign = inside ? -1 : 1;
-    real ha = real_abs(torus_height_at(&r, tube, a).h),
-         hb = real_abs(torus_height_at(&r, tube, b).h);
-    /* As of a parabola about the end that is nearer to the surface. */
-    real part = real_sqrt(real_min(ha, hb) / (ha + hb));
-    real s = ha < hb ? a + (b - a) * part : b - (b - a) * part;
->>>>>>> 48eaba1 (tracer: kernels in single and double precision, solids, patterns, smooth meshes; surfaces that a ray leaves are left out exactly)
 #pragma GCC unroll 16
     for (int i = 0; i < TORUS_ROOT_STEPS; i++) {
         torus_height at = torus_height_at(&r, tube, s);
@@ -127,15 +99,9 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
         a = before ? s : a;
         b = before ? b : s;
         real next = s - at.h / (2 * at.slope);
-<<<<<<< HEAD
         s = (next >= a) & (next <= b) ? next : (real)0.5 * (a + b);
     }
     bool meets = inside | ((at0 | at2) & (reach2 > 0) & (k > -reach));
-=======
-        s = (next > a) & (next < b) ? next : (real)0.5 * (a + b);
-    }
-    bool meets = inside | ((enters0 | enters2) & (reach2 > 0) & (k > -reach));
->>>>>>> 48eaba1 (tracer: kernels in single and double precision, solids, patterns, smooth meshes; surfaces that a ray leaves are left out exactly)
     return real_max((k + s) * scale, REAL_LEAST) + (meets ? 0 : REAL_INFINITY);
 }
 
