@@ -12,9 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/text.h"
 #include "description/normals.h"
-#include "description/ply_header.h"
+#include "description/ply_rows.h"
 #include "description/triangulate.h"
 #include "image/develop.h"
 
@@ -23,12 +22,8 @@ static const double coordinate_max = 1e18;
 static const double color_max = 1e30;
 
 typedef struct reader {
-    const zt_ply_source *source;
+    zt_ply_rows rows;
     zt_ply_header header;
-    const char *at;                /* the next byte of data */
-    const char *last;              /* the first byte of the number that was read last */
-    const zt_ply_element *element; /* being gone through, and which of its rows: */
-    int32_t row;
     int64_t most_triangles; /* what the survey found: as many triangles or fewer, */
     int32_t most_corners;   /* and the corners of the largest polygon */
     double *positions;      /* of the vertices, x y z each, as the file has them */
@@ -43,147 +38,30 @@ typedef struct reader {
     zt_triangulator triangulator;
 } reader;
 
-static bool is_ascii(const reader *r) { return r->header.format == ZT_PLY_ASCII; }
-
-static zt_status refuse_end(const reader *r) {
-    return zt_ply_refuse(r->source, NULL, 0, "the file ends within %.*s %d of %d",
-                         r->element->name_length, r->element->at, r->row, r->element->count);
-}
-
-/* A mistake in the row being read: in its last number, where that is text. */
-#define REFUSE_ROW(r, format, ...)                                                             \
-    zt_ply_refuse((r)->source, is_ascii(r) ? (r)->last : NULL, (size_t)((r)->at - (r)->last),  \
-                  "%.*s %d: " format, (r)->element->name_length, (r)->element->at, (r)->row,   \
-                  __VA_ARGS__)
-
-/* The value of a type's bytes, the most significant one last or first. */
-static double binary_number(const char *at, zt_ply_type type, bool big_endian) {
-    int size = zt_ply_type_size(type);
-    uint64_t bits = 0;
-    for (int i = 0; i < size; i++)
-        bits = bits << 8 | (unsigned char)at[big_endian ? i : size - 1 - i];
-    uint32_t bits32 = (uint32_t)bits;
-    float single;
-    double number = 0;
-    switch (type) {
-    case ZT_PLY_INT8:
-        return (int8_t)bits;
-    case ZT_PLY_INT16:
-        return (int16_t)bits;
-    case ZT_PLY_INT32:
-        return (int32_t)bits;
-    case ZT_PLY_UINT8:
-    case ZT_PLY_UINT16:
-    case ZT_PLY_UINT32:
-        return bits32;
-    case ZT_PLY_FLOAT:
-        memcpy(&single, &bits32, sizeof single);
-        return (double)single;
-    case ZT_PLY_DOUBLE:
-        memcpy(&number, &bits, sizeof number);
-        break;
-    }
-    return number;
-}
-
-/* Goes behind the next piece of text between blanks; false at the end of the file. */
-static bool next_word(reader *r) {
-    const char *at = r->at;
-    while (at < r->source->end && (unsigned char)*at <= ' ') at++;
-    r->last = at;
-    while ((unsigned char)*at > ' ') at++; /* the '\0' behind the bytes ends it at last */
-    r->at = at;
-    return at > r->last;
-}
-
-static zt_status ascii_number(reader *r, double *value) {
-    if (!next_word(r)) return refuse_end(r);
-    /* Most numbers are small and whole. */
-    const char *c = r->last;
-    int64_t whole = 0;
-    while (*c >= '0' && *c <= '9' && c - r->last < 15) whole = 10 * whole + (*c++ - '0');
-    *value = (double)whole;
-    if (c < r->at && !zt_text_number(value, r->last, r->at))
-        return REFUSE_ROW(r, "\"%.*s\" is no finite number",
-                          r->at - r->last < 32 ? (int)(r->at - r->last) : 32, r->last);
-    return ZT_OK;
-}
-
-static zt_status read_number(reader *r, zt_ply_type type, double *value) {
-    if (is_ascii(r)) return ascii_number(r, value);
-    int size = zt_ply_type_size(type);
-    if (r->source->end - r->at < size) return refuse_end(r);
-    *value = binary_number(r->at, type, r->header.format == ZT_PLY_BIG_ENDIAN);
-    r->last = r->at;
-    r->at += size;
-    return ZT_OK;
-}
-
-static zt_status skip_values(reader *r, zt_ply_type type, int32_t count) {
-    if (is_ascii(r)) {
-        for (int32_t i = 0; i < count; i++)
-            if (!next_word(r)) return refuse_end(r);
-        return ZT_OK;
-    }
-    int64_t size = (int64_t)count * zt_ply_type_size(type);
-    if (r->source->end - r->at < size) return refuse_end(r);
-    r->at += size;
-    return ZT_OK;
-}
-
-/* How many items a list has: never more than the file has bytes left for. */
-static zt_status read_length(reader *r, const zt_ply_property *list, int32_t *length) {
-    double number = 0;
-    ZT_TRY(read_number(r, list->count_type, &number));
-    if (!(number >= 0 && number <= INT32_MAX) || number != floor(number))
-        return REFUSE_ROW(r, "a list cannot have %.10g items", number);
-    int64_t item_size =
-        is_ascii(r) ? 2 /* a blank and a digit */ : zt_ply_type_size(list->type);
-    int64_t room = (r->source->end - r->at) / item_size;
-    if ((int64_t)number > room)
-        return REFUSE_ROW(r, "the file is too short for a list of %.10g items", number);
-    *length = (int32_t)number;
-    return ZT_OK;
-}
-
-/* Reads or skips a property's `count` values, of a list or one. */
-typedef zt_status take_values(reader *r, const zt_ply_property *property, int32_t count);
-
-/* Goes through an element's rows, from the reader's place on. */
-static zt_status go_through(reader *r, const zt_ply_element *element, take_values *take) {
-    r->element = element;
-    if (!element->properties) return ZT_OK;
-    for (r->row = 0; r->row < element->count; r->row++)
-        for (const zt_ply_property *p = element->properties; p; p = p->next) {
-            int32_t count = 1;
-            if (p->is_list) ZT_TRY(read_length(r, p, &count));
-            ZT_TRY(p->role == ZT_PLY_SKIPPED ? skip_values(r, p->type, count)
-                                             : take(r, p, count));
-        }
-    return ZT_OK;
-}
-
-static zt_status survey_values(reader *r, const zt_ply_property *property, int32_t count) {
+static zt_status survey_values(void *user, const zt_ply_property *property, int32_t count) {
+    reader *r = user;
     if (property->role == ZT_PLY_CORNERS) {
         if (count > 2) r->most_triangles += count - 2;
         if (count > r->most_corners) r->most_corners = count;
     }
-    return skip_values(r, property->type, count);
+    return zt_ply_skip(&r->rows, property->type, count);
 }
 
 static zt_status survey(reader *r) {
-    r->at = r->header.data;
+    r->rows.at = r->header.data;
     for (zt_ply_element *e = r->header.elements; e; e = e->next) {
-        e->data = r->at;
-        if (is_ascii(r) || e->has_list || r->source->end - r->at < e->row_bytes * e->count)
-            ZT_TRY(go_through(r, e, survey_values));
+        e->data = r->rows.at;
+        if (zt_ply_is_ascii(&r->rows) || e->has_list ||
+            r->rows.source->end - r->rows.at < e->row_bytes * e->count)
+            ZT_TRY(zt_ply_go_through(&r->rows, e, survey_values, r));
         else
-            r->at += e->row_bytes * e->count;
+            r->rows.at += e->row_bytes * e->count;
     }
     if (r->most_triangles == 0)
-        return zt_ply_refuse(r->source, NULL, 0, "no face has three corners");
+        return zt_ply_refuse(r->rows.source, NULL, 0, "no face has three corners");
     if (r->most_triangles > INT32_MAX)
-        return zt_ply_refuse(r->source, NULL, 0, "there are more than %d triangles", INT32_MAX);
+        return zt_ply_refuse(r->rows.source, NULL, 0, "there are more than %d triangles",
+                             INT32_MAX);
     return ZT_OK;
 }
 
@@ -192,21 +70,21 @@ static zt_status survey(reader *r) {
 
 /* The number of a part of a normal: NaN, however text spells it, where it is not finite. */
 static zt_status read_normal_part(reader *r, zt_ply_type type, double *value) {
-    if (!is_ascii(r)) return read_number(r, type, value);
-    const char *at = r->at;
-    *value = next_word(r) ? strtod(r->last, NULL) : 0;
+    if (!zt_ply_is_ascii(&r->rows)) return zt_ply_read_number(&r->rows, type, value);
+    const char *at = r->rows.at;
+    *value = zt_ply_next_word(&r->rows) ? strtod(r->rows.last, NULL) : 0;
     if (!isfinite(*value)) return ZT_OK;
-    r->at = at;
-    return ascii_number(r, value);
+    r->rows.at = at;
+    return zt_ply_read_number(&r->rows, type, value);
 }
 
 /* Integers are a display's color, the largest of their type being white; others are light. */
 static zt_status read_color_part(reader *r, const zt_ply_property *property, double *value) {
     static const char *const names[] = {"red", "green", "blue"};
-    ZT_TRY(read_number(r, property->type, value));
+    ZT_TRY(zt_ply_read_number(&r->rows, property->type, value));
     if (!(fabs(*value) <= color_max))
-        return REFUSE_ROW(r, "%s is %g, but must be at most %g",
-                          names[property->role - ZT_PLY_RED], *value, color_max);
+        return ZT_PLY_REFUSE_ROW(&r->rows, "%s is %g, but must be at most %g",
+                                 names[property->role - ZT_PLY_RED], *value, color_max);
     double most = property->type == ZT_PLY_UINT8    ? UINT8_MAX
                   : property->type == ZT_PLY_UINT16 ? UINT16_MAX
                                                     : 0;
@@ -216,10 +94,10 @@ static zt_status read_color_part(reader *r, const zt_ply_property *property, dou
 }
 
 static zt_status read_coordinate(reader *r, const zt_ply_property *property, double *value) {
-    ZT_TRY(read_number(r, property->type, value));
+    ZT_TRY(zt_ply_read_number(&r->rows, property->type, value));
     if (!(fabs(*value) <= coordinate_max))
-        return REFUSE_ROW(r, "%c is %g, but must lie between -%g and %g", "xyz"[property->role],
-                          *value, coordinate_max, coordinate_max);
+        return ZT_PLY_REFUSE_ROW(&r->rows, "%c is %g, but must lie between -%g and %g",
+                                 "xyz"[property->role], *value, coordinate_max, coordinate_max);
     if (property->type == ZT_PLY_FLOAT) *value = (double)(float)*value; /* text may say more */
     return ZT_OK;
 }
@@ -227,7 +105,7 @@ static zt_status read_coordinate(reader *r, const zt_ply_property *property, dou
 /* All of a row's numbers are there. */
 static void finish_vertex(reader *r) {
     const double *v = r->vertex;
-    int64_t at = 3 * (int64_t)r->row;
+    int64_t at = 3 * (int64_t)r->rows.row;
     r->vertex_taken = 0;
     memcpy(r->positions + at, v, 3 * sizeof *v);
     if (r->normals) {
@@ -241,7 +119,8 @@ static void finish_vertex(reader *r) {
     for (int c = 0; c < 3 && r->colors; c++) r->colors[at + c] = (float)v[ZT_PLY_RED + c];
 }
 
-static zt_status take_vertex_part(reader *r, const zt_ply_property *property, int32_t count) {
+static zt_status take_vertex_part(void *user, const zt_ply_property *property, int32_t count) {
+    reader *r = user;
     (void)count; /* these are no lists */
     double *value = &r->vertex[property->role];
     if (property->role <= ZT_PLY_Z)
@@ -281,18 +160,20 @@ static zt_status make_room(reader *r, zt_arena *arena, zt_arena *scratch, unsign
 /* A vertex's index; where `restart` is given, true there instead for -1. */
 static zt_status read_corner(reader *r, zt_ply_type type, uint32_t *corner, bool *restart) {
     double number = 0;
-    ZT_TRY(read_number(r, type, &number));
+    ZT_TRY(zt_ply_read_number(&r->rows, type, &number));
     if (restart) *restart = number == -1;
     if (restart && *restart) return ZT_OK;
     int32_t vertex_count = r->header.vertex->count;
     if (!(number >= 0 && number < vertex_count) || number != floor(number))
-        return REFUSE_ROW(r, "there is no vertex %.10g; they are counted from 0 to %d", number,
-                          vertex_count - 1);
+        return ZT_PLY_REFUSE_ROW(&r->rows,
+                                 "there is no vertex %.10g; they are counted from 0 to %d",
+                                 number, vertex_count - 1);
     *corner = (uint32_t)number;
     return ZT_OK;
 }
 
-static zt_status take_polygon(reader *r, const zt_ply_property *property, int32_t count) {
+static zt_status take_polygon(void *user, const zt_ply_property *property, int32_t count) {
+    reader *r = user;
     for (int32_t i = 0; i < count; i++)
         ZT_TRY(read_corner(r, property->type, &r->corners[i], NULL));
     if (count < 3) return ZT_OK; /* a point or a line */
@@ -303,7 +184,8 @@ static zt_status take_polygon(reader *r, const zt_ply_property *property, int32_
 
 /* A triangle for each corner and the two before it. Every other one would wind the wrong way
  * round but for taking the corner with the even number first. */
-static zt_status take_strip(reader *r, const zt_ply_property *property, int32_t count) {
+static zt_status take_strip(void *user, const zt_ply_property *property, int32_t count) {
+    reader *r = user;
     uint32_t before[2] = {0};
     for (int32_t i = 0, length = 0; i < count; i++) {
         uint32_t corner;
@@ -324,9 +206,9 @@ static zt_status take_strip(reader *r, const zt_ply_property *property, int32_t 
     return ZT_OK;
 }
 
-static zt_status read_rows(reader *r, const zt_ply_element *element, take_values *take) {
-    r->at = element->data;
-    return go_through(r, element, take);
+static zt_status read_rows(reader *r, const zt_ply_element *element, zt_ply_take *take) {
+    r->rows.at = element->data;
+    return zt_ply_go_through(&r->rows, element, take, r);
 }
 
 static zt_status read_triangles(reader *r, zt_arena *arena, zt_arena *scratch) {
@@ -337,9 +219,10 @@ static zt_status read_triangles(reader *r, zt_arena *arena, zt_arena *scratch) {
     if (r->header.face) ZT_TRY(read_rows(r, r->header.face, take_polygon));
     if (r->header.strips) ZT_TRY(read_rows(r, r->header.strips, take_strip));
     if (r->triangle_count == 0)
-        return zt_ply_refuse(r->source, NULL, 0, "no strip has three corners");
+        return zt_ply_refuse(r->rows.source, NULL, 0, "no strip has three corners");
     if (r->triangulator.given_up > 0)
-        zt_tell_at(r->source->listener, ZT_WARNING, &(zt_place){.file = r->source->path},
+        zt_tell_at(r->rows.source->listener, ZT_WARNING,
+                   &(zt_place){.file = r->rows.source->path},
                    "polygons too intricate to be cut with care: %d; they may look wrong",
                    r->triangulator.given_up);
     return ZT_OK;
@@ -392,7 +275,7 @@ static zt_status write_mesh(const reader *r, zt_mesh *mesh, zt_arena *arena) {
 
 static zt_status read_mesh(zt_mesh *mesh, zt_arena *arena, zt_arena *scratch,
                            zt_ply_source *source, unsigned parts) {
-    reader r = {.source = source};
+    reader r = {.rows = {.source = source, .header = &r.header}};
     ZT_TRY(zt_ply_header_read(&r.header, scratch, source));
     ZT_TRY(survey(&r));
     ZT_TRY(make_room(&r, arena, scratch, parts));

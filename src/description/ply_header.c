@@ -176,8 +176,8 @@ static zt_ply_role role_of(const parser *p, const zt_ply_property *property, wor
                                                            "nz", "red", "green", "blue"};
     if (p->element == p->header->vertex && !property->is_list)
         for (int role = 0; role < ZT_PLY_VERTEX_ROLES; role++)
-            if (is_word(name, names[role]) &&
-                (role < ZT_PLY_RED || is_color_type(property->type)))
+            if ((role < ZT_PLY_RED || is_color_type(property->type)) &&
+                is_word(name, names[role]))
                 return (zt_ply_role)role;
     if ((p->element == p->header->face || p->element == p->header->strips) &&
         property->is_list && property->type < ZT_PLY_FLOAT &&

@@ -1,7 +1,7 @@
 /* Looks for bytes that harm the PLY reader, by libFuzzer:
  *
  *     clang -g -O1 -fsanitize=fuzzer,address,undefined -D_GNU_SOURCE -Iinclude -Isrc \
- *         tests/fuzz/ply.c src/description/{ply,ply_header,triangulate,normals}.c \
+ *         tests/fuzz/ply.c src/description/{ply,ply_header,ply_rows,triangulate,normals}.c \
  *         src/image/develop.c src/base/{arena,diag,text}.c -lm -o /tmp/fuzz_ply
  *     /tmp/fuzz_ply -max_len=4096 -timeout=2 -rss_limit_mb=512 a_copy_of_some_models/
  */
