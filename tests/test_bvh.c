@@ -77,14 +77,16 @@ static long double entry(const zt_bvh_rays *r, int i, const zt_bvh_box *box) {
 
 static float pick(draw *d, float low, float high) { return draw_below(d, 2) ? low : high; }
 
-/* Boxes of all sizes within `size`, some of them flat, or of no size at all. */
+/* Boxes of all sizes within `size`, here or far away, some of them flat, or of no size at all.
+ */
 static void draw_boxes(meeting *m, draw *d, int32_t count, double size) {
     m->box_count = count;
+    double shift = draw_below(d, 4) ? 0 : size * draw_magnitude(d, 1, 1e5);
     for (int32_t k = 0; k < count; k++) {
         double half = size * draw_magnitude(d, 1e-7, .5);
         for (int axis = 0; axis < 3; axis++) {
-            double middle = draw_between(d, -size, size);
-            if (draw_below(d, 8) == 0) middle = 0;
+            double middle = shift + draw_between(d, -size, size);
+            if (draw_below(d, 8) == 0) middle = shift;
             double reach = draw_below(d, 5) ? half * draw_unit(d) : 0;
             m->boxes[k].low[axis] = (float)(middle - reach);
             m->boxes[k].high[axis] = (float)(middle + reach);

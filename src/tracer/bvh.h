@@ -60,9 +60,10 @@ typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
  * them though no ray meets them.
  *
  * No box is passed by that a ray, its numbers taken as exact, touches before `far`, for origins
- * within 2^28 times the largest coordinate of all boxes; what is less than 2^-18 of that is
- * looked at as if it were that large. Roundings of the numbers themselves are the caller's to
- * allow for, by larger boxes, or by moving origins near in double precision first. */
+ * within 2^28 times half the size of what all boxes make up. Boxes smaller than 2^-18 of that
+ * are looked at as if they were that large, so that giants and dwarfs should not share a
+ * hierarchy. Roundings of the numbers themselves are the caller's to allow for, by larger
+ * boxes, or by moving origins near in double precision first. */
 typedef void zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
 void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);

@@ -3,13 +3,13 @@
  *
  * Such scenes Embree traverses without regard to roundings, whatever its flags say, so that
  * these are allowed for here. It sees all of it scaled by powers of two, which changes no
- * digit: space so that coordinates of boxes reach about 1 (it passes by what is beyond 1e18),
- * directions so that their largest component is between 1 and 2. Origins further away are moved
- * along their rays to about where these come near, so that all are within 4, or else the ray is
- * of no concern. A distance t to a face at b from the origin o, worked out as b / d - o / d
- * with a reciprocal that is off by 2^-22, is then off by what moving the face by (|b| + |o|)
- * 2^-21.4 is at most, that is, less than GROWN. Components below 1e-18 are taken for that,
- * which over the little way that is left is less still. */
+ * digit, and moved: space so that the boxes reach from about -1 to 1 (Embree passes by what is
+ * beyond 1e18), directions so that their largest component is between 1 and 2. Origins further
+ * away are moved along their rays to about where these come near, so that all are within 4, or
+ * else the ray is of no concern. A distance t to a face at b from the origin o, worked out as b
+ * / d - o / d with a reciprocal that is off by 2^-22, is then off by what moving the face by
+ * (|b| + |o|) 2^-21.4 is at most, that is, less than GROWN. Components below 1e-18 are taken
+ * for that, which over the little way that is left is less still. */
 #include "tracer/embree.h"
 
 #include <embree3/rtcore.h>
@@ -24,8 +24,8 @@
 
 enum { LANES = ZT_BVH_LANES };
 
-#define GROWN   0x1p-18f /* by how much boxes are grown, of their largest coordinate */
-#define BEFORE  2        /* that coordinate's reach in any direction, and some more */
+#define GROWN   0x1p-18f /* by how much boxes are grown */
+#define BEFORE  2 /* how far from the center, at least, rays look from: all boxes are within */
 #define FURTHER (1 + 0x1p-20)
 
 struct zt_embree {
@@ -37,7 +37,7 @@ typedef struct hierarchy {
     zt_bvh base;
     RTCScene scene;
     RTCGeometry geometry;
-    float scale;             /* of Embree's space, a power of two */
+    double center[3], scale; /* Embree's space: (p - center) scale, a power of two */
     const zt_bvh_box *boxes; /* while it is built */
 } hierarchy;
 
@@ -91,21 +91,26 @@ static void embree_free(zt_bvh **slot) {
     *slot = NULL;
 }
 
-/* Boxes that are not finite come out so again, and Embree leaves them out. */
+static bool is_box(const zt_bvh_box *b) {
+    bool good = true;
+    for (int i = 0; i < 3; i++)
+        good &= (b->low[i] <= b->high[i]) & (b->low[i] > -INFINITY) & (b->high[i] < INFINITY);
+    return good;
+}
+
+/* Bounds that are not finite have Embree leave a box out. */
 static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
     const hierarchy *h = arguments->geometryUserPtr;
     const zt_bvh_box *box = &h->boxes[arguments->primID];
-    float low[3], high[3];
-    bool empty = false;
+    float low[3], high[3], grown = is_box(box) ? GROWN : -INFINITY;
     for (int i = 0; i < 3; i++) {
-        low[i] = box->low[i] * h->scale - GROWN;
-        high[i] = box->high[i] * h->scale + GROWN;
-        empty |= !(box->low[i] <= box->high[i]);
+        low[i] = (float)(((double)box->low[i] - h->center[i]) * h->scale) - grown;
+        high[i] = (float)(((double)box->high[i] - h->center[i]) * h->scale) + grown;
     }
-    *arguments->bounds_o = (struct RTCBounds){.lower_x = empty ? INFINITY : low[0],
+    *arguments->bounds_o = (struct RTCBounds){.lower_x = low[0],
                                               .lower_y = low[1],
                                               .lower_z = low[2],
-                                              .upper_x = empty ? -INFINITY : high[0],
+                                              .upper_x = high[0],
                                               .upper_y = high[1],
                                               .upper_z = high[2]};
 }
@@ -147,19 +152,22 @@ static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_lif
     return ZT_OK;
 }
 
-/* The power of two that takes the largest coordinate to about 1; numbers that are not finite
- * are passed over. */
-static float scale_of(const zt_bvh_box *boxes, int32_t count) {
-    float largest = 0;
-    for (int32_t i = 0; i < count; i++)
-        for (int j = 0; j < 3; j++) {
-            float low = fabsf(boxes[i].low[j]), high = fabsf(boxes[i].high[j]);
-            if (low > largest && low < INFINITY) largest = low;
-            if (high > largest && high < INFINITY) largest = high;
+/* Has Embree's space reach from about -1 to 1. */
+static void fit_space(hierarchy *h, const zt_bvh_box *boxes, int32_t count) {
+    double half = 0;
+    for (int i = 0; i < 3; i++) {
+        float low = INFINITY, high = -INFINITY;
+        for (int32_t k = 0; k < count; k++) {
+            if (!is_box(&boxes[k])) continue;
+            if (boxes[k].low[i] < low) low = boxes[k].low[i];
+            if (boxes[k].high[i] > high) high = boxes[k].high[i];
         }
+        h->center[i] = low <= high ? ((double)low + (double)high) / 2 : 0;
+        if (half < (double)high - h->center[i]) half = (double)high - h->center[i];
+    }
     int exponent;
-    frexpf(largest, &exponent);
-    return ldexpf(1, exponent < -126 ? 126 : exponent > 126 ? -126 : -exponent);
+    frexp(half, &exponent);
+    h->scale = ldexp(1, -exponent);
 }
 
 static zt_status embree_of_boxes(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
@@ -167,7 +175,7 @@ static zt_status embree_of_boxes(zt_bvh **bvh, zt_embree *embree, const zt_bvh_b
     if (!*bvh) ZT_TRY(new_hierarchy(bvh, embree, life));
     hierarchy *h = (hierarchy *)*bvh;
     h->boxes = boxes;
-    h->scale = scale_of(boxes, box_count);
+    fit_space(h, boxes, box_count);
     rtcSetGeometryUserPrimitiveCount(h->geometry, (unsigned)box_count);
     rtcCommitGeometry(h->geometry);
     rtcCommitScene(h->scene);
@@ -192,7 +200,8 @@ static inline float larger(float a, float b) { return a > b ? a : b; }
 /* Fills a packet with rays from l->first on. Returns whether any of them looks anywhere. */
 ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restrict valid,
                                   look *restrict l, const zt_bvh_rays *restrict rays,
-                                  float scale) {
+                                  const hierarchy *restrict h) {
+    double cx = h->center[0], cy = h->center[1], cz = h->center[2], scale = h->scale;
     int any = 0, first = l->first, count = rays->count - first;
     WIDE_LOOP
     for (int lane = 0; lane < LANES; lane++) {
@@ -200,10 +209,10 @@ ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restric
         float dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
         float length, shrink;
         exponent_of(&length, &shrink, larger(larger(fabsf(dx), fabsf(dy)), fabsf(dz)));
-        double far = (double)rays->far[i], stretch = (double)length * (double)scale * FURTHER;
-        double ox = (double)(rays->ox[i] * scale), wx = (double)(dx * shrink);
-        double oy = (double)(rays->oy[i] * scale), wy = (double)(dy * shrink);
-        double oz = (double)(rays->oz[i] * scale), wz = (double)(dz * shrink);
+        double far = (double)rays->far[i], stretch = (double)length * scale * FURTHER;
+        double ox = ((double)rays->ox[i] - cx) * scale, wx = (double)(dx * shrink);
+        double oy = ((double)rays->oy[i] - cy) * scale, wy = (double)(dy * shrink);
+        double oz = ((double)rays->oz[i] - cz) * scale, wz = (double)(dz * shrink);
         double nearest = -(ox * wx + oy * wy + oz * wz) / (wx * wx + wy * wy + wz * wz);
         double moved = nearest > BEFORE ? nearest - BEFORE : 0;
         packet->org_x[lane] = (float)(ox + moved * wx);
@@ -236,7 +245,7 @@ static void embree_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind,
     memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID);
     for (; l.first < rays->count; l.first += LANES) {
         alignas(64) int valid[LANES];
-        if (load_packet(&packet.ray, valid, &l, rays, h->scale))
+        if (load_packet(&packet.ray, valid, &l, rays, h))
             rtcIntersect16(valid, h->scene, &l.context, &packet);
     }
 }
