@@ -85,6 +85,9 @@ static void lamps_inside(void **state) {
         assert_lamp("position: [0, 0.5, 0], shadows: false", cases[i].object, "");
         assert_lamp("position: [0, 10, 0]", cases[i].object, "");
     }
+    assert_lamp("position: [0, 0, 0]", /* what a scale of 0 hides shuts nothing in */
+                "group: { scale: [1, 0, 1], objects: [ box: { center: [0, 0, 0], size: 1 } ] }",
+                "");
     assert_lamp("position: { curve: linear, keys: { 0: [0, 0, 0], 48: [48, 0, 0] } }",
                 "sphere: { center: [12, 0, 0], radius: 2.1 }",
                 INSIDE("lamp", "sphere 1 from frame 10 to frame 14"));

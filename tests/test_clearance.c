@@ -163,6 +163,9 @@ static void nothing_there(void **state) {
     };
     for (size_t i = 0; i < sizeof objects / sizeof *objects; i++)
         assert_true(zt_clearance(&objects[i], (vec3){0.1, 0.2, 0.3}) == INFINITY);
+    const zt_object cube = box(o, (vec3){1, 1, 1}, quat_identity());
+    assert_true(zt_clearance(&cube, (vec3){NAN, NAN, NAN}) == INFINITY);
+    assert_true(zt_clearance(&cube, (vec3){0, -INFINITY, 0}) == INFINITY);
 }
 
 /* A mesh is as near as its nearest triangle. */

@@ -103,6 +103,7 @@ static double triangle_distance(vec3 a, vec3 b, vec3 c, vec3 point) {
 double zt_clearance(const zt_object *object, vec3 point) {
     const zt_tube *tube = &object->tube;
     const vec3 *v = object->triangle.vertices;
+    if (!isfinite(point.x) || !isfinite(point.y) || !isfinite(point.z)) return INFINITY;
     switch (object->shape) {
     case ZT_SHAPE_PLANE:
         return plane_distance(&object->plane, point);

@@ -6,7 +6,7 @@
 
 /* The distance of a point of the object's space from the object's surface, negative within a
  * solid. INFINITY where there is no surface: of what has no size, and of groups; of meshes,
- * which are asked with zt_mesh_clearance. */
+ * which are asked with zt_mesh_clearance; and for points that are not finite. */
 double zt_clearance(const zt_object *object, vec3 point);
 
 /* The distance of a point of a mesh's space from its nearest triangle. Looks at each of them.
