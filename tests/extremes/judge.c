@@ -13,21 +13,50 @@ void judge_count(const judge *j, int64_t *counter, const char *what, const ref_r
                  ref_hit expected, const probe *a) {
     if (++*counter > 3 || !j->verbose) return;
     printf("  %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
-           "object %d part %d t %.17g, reference object %d part %d t %.17g\n",
+           "object %d part %d t %.17g, reference object %d part %d t %.17g, of shape %d\n",
            j->name, what, (double)ray->o.x, (double)ray->o.y, (double)ray->o.z,
            (double)ray->d.x, (double)ray->d.y, (double)ray->d.z, ray->source_object,
            ray->source_part, a->object, a->part, a->t, expected.object, expected.part,
-           (double)expected.t);
+           (double)expected.t,
+           (int)j->ref->primitives[a->object < 0 ? expected.object : a->object].shape);
 }
 
-/* Whether an answer is the surface that the ray leaves, where it leaves it. */
+/* By how much changes within the tolerance move the place along a ray where it meets a face:
+ * less by its slant than by its bend where the ray runs along it. */
+static real uncertainty(const judge *j, const ref_primitive *p, int32_t part,
+                        const ref_ray *ray, real t) {
+    ref_face face = ref_nearest_face(p, part, real3_along(ray->o, t, ray->d));
+    real off = j->tolerance * ref_scale(p, ray, t) + p->grain;
+    real slant = real_abs(real3_dot(face.normal, real3_unit(ray->d)));
+    real by_slant = off / slant, by_bend = 2 * REAL(sqrt)(2 * off / face.bend);
+    return real_min(by_slant, by_bend) / real3_length(ray->d);
+}
+
+/* How many faces of a primitive a ray may begin on. */
+static int near_faces(const judge *j, const ref_primitive *p, const ref_ray *ray,
+                      int32_t part) {
+    ref_face faces[REF_FACES_MAX];
+    int count = ref_faces(faces, p, part, ray->o), near = 0;
+    for (int i = 0; i < count; i++)
+        near += faces[i].distance <= j->tolerance * ref_scale(p, ray, 0);
+    return near;
+}
+
+/* Whether an answer is the surface that the ray leaves, where it leaves it; not where it is
+ * open to which side it does. */
 static bool is_source(const judge *j, const ref_ray *ray, const probe *a) {
     if (a->object != ray->source_object) return false;
     const ref_primitive *p = &j->ref->primitives[a->object];
     if (p->shape == ZT_SHAPE_MESH) return a->part == ray->source_part;
+    ref_face face = ref_nearest_face(p, a->part, ray->o);
+    real turn = j->tolerance * (1 + face.twist + face.bend * ref_scale(p, ray, 0));
+    bool flat = p->shape <= ZT_SHAPE_DISK && p->shape != ZT_SHAPE_SPHERE;
+    if (!flat && real_abs(real3_dot(face.normal, real3_unit(ray->d))) <= turn) return false;
+    if (near_faces(j, p, ray, a->part) > 1) return false;
     ref_hit far;
     bool sure;
-    if (ref_first(&far, p, ray, 0, (real)INFINITY)) return a->t < far.t / 2;
+    if (ref_first(&far, p, ray, 0, (real)INFINITY))
+        return a->t < far.t / 2 && far.t > 4 * uncertainty(j, p, far.part, ray, far.t);
     ref_blocked(&sure, j->ref, ray, (real)INFINITY, j->tolerance, a->object);
     return sure;
 }
@@ -108,18 +137,20 @@ static bool judge_surface(const judge *j, const ref_ray *ray, real scale, ref_hi
         return false;
     }
     const ref_primitive *p = &j->ref->primitives[a->object];
-    if (a->object == expected.object) {
-        ref_face face = ref_nearest_face(p, a->part, real3_of(a->point));
-        real slant = real_abs(real3_dot(face.normal, ray->d)) / real3_length(ray->d);
-        if (real_abs(a->t - expected.t) * slant <= 4 * j->tolerance * scale) {
-            judge_distance(j, ray, scale, expected, &face, a);
-            return true;
-        }
-    } else if (j->strict && is_equal(p, ray, expected)) {
+    ref_face face = ref_nearest_face(p, a->part, real3_of(a->point));
+    real slant = real_abs(real3_dot(face.normal, ray->d)) / real3_length(ray->d);
+    bool there = real_abs(a->t - expected.t) * slant <= 4 * j->tolerance * scale;
+    if (there && a->object == expected.object) {
+        judge_distance(j, ray, scale, expected, &face, a);
+        return true;
+    }
+    if (there && j->strict && is_equal(p, ray, expected)) {
         judge_count(j, &j->tally->wrong, "not the first of equals", ray, expected, a);
         return false;
     }
-    blocked = ref_blocked(&sure, j->ref, ray, a->t, j->tolerance, -1);
+    /* What is in front has to be so by more than the place of the answer is unsure. */
+    real before = a->t - 2 * uncertainty(j, p, a->part, ray, a->t);
+    blocked = ref_blocked(&sure, j->ref, ray, before, j->tolerance, -1);
     if (blocked && sure) {
         judge_count(j, j->closed ? &j->tally->leaks : &j->tally->wrong, "not the nearest", ray,
                     expected, a);

@@ -43,12 +43,10 @@ static void judge_light(const judge *j, const ref_ray *ray, int light, bool reac
 
 void judge_lights(const judge *j, const ref_ray *ray, real scale, const probe *a) {
     const zt_scene *scene = j->ref->scene;
-    int bit = 0;
     if (scene->objects[a->object].smooth) return;
     for (int32_t i = 0; i < scene->light_count; i++) {
-        if (scene->lights[i].kind != ZT_LIGHT_POINT) continue;
-        judge_light(j, ray, i, (a->lights >> bit) & 1, scale, a);
-        bit++;
+        if (scene->lights[i].kind == ZT_LIGHT_POINT)
+            judge_light(j, ray, i, (a->lights >> i) & 1, scale, a);
     }
 }
 
@@ -78,10 +76,9 @@ void judge_smooth(const judge *j, const ref_ray *ray, const probe *a) {
     if (real3_dot(normal, real3_unit(ray->d)) > -(real)0.02) return;
     real off = real3_length(real3_sub(normal, real3_of(a->normal))) / 10;
     if (!((double)off <= j->tally->normal)) j->tally->normal = (double)off;
-    int bit = 0;
     for (int32_t i = 0; i < j->ref->scene->light_count; i++) {
         if (j->ref->scene->lights[i].kind != ZT_LIGHT_POINT) continue;
-        bool lit = (a->lights >> bit++) & 1;
+        bool lit = (a->lights >> i) & 1;
         real3 way = real3_unit(real3_sub(j->ref->lights[i], real3_of(a->point)));
         real side = real3_dot(way, normal);
         ref_ray shadow = {real3_of(a->point), way, a->object, a->part};

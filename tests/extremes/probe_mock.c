@@ -70,7 +70,6 @@ static void run(const probe_tracer *t, probe *p) {
     p->next_source = code(&hit);
     point = real3_of(p->point);
     p->lights = 0;
-    int bit = 0;
     for (int32_t i = 0; i < t->ref.scene->light_count; i++) {
         real3 way = real3_sub(t->ref.lights[i], point);
         ref_ray shadow = {point, way, hit.object, hit.part};
@@ -78,7 +77,7 @@ static void run(const probe_tracer *t, probe *p) {
                          (smooth || !ref_blocked(&sure, &t->ref, &shadow, 1, 0, -1));
         if (probe_mock_lie == MOCK_DARK) lit = false;
         if (probe_mock_lie == MOCK_LIT) lit = true;
-        p->lights |= (uint32_t)lit << bit++;
+        p->lights |= (uint64_t)lit << i;
     }
 }
 

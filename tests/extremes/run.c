@@ -26,9 +26,9 @@ static uint64_t digest(uint64_t before, const probe *p) {
         double t;
         vec3 point, normal, origin, direction;
         int32_t object, part;
-        uint32_t lights, padding;
-    } said = {p->t,    p->point,  p->normal, p->next_origin, p->next_direction, p->object,
-              p->part, p->lights, 0};
+        uint64_t lights;
+    } said = {p->t,      p->point, p->normal, p->next_origin, p->next_direction,
+              p->object, p->part,  p->lights};
     if (p->object < 0) memset(&said, 0xff, sizeof said);
     return zt_random_key(before, zt_hash_bytes(&said, sizeof said).low);
 }
