@@ -491,7 +491,7 @@ static void shoot_closed(closed_mesh mesh, double shift, int64_t rays) {
     zt_clusters clusters;
     zt_bvh *bvh = NULL;
     assert_int_equal(
-        zt_clusters_build(&clusters, mesh.positions, mesh.triangles, mesh.triangle_count),
+        zt_clusters_build(&clusters, mesh.positions, mesh.triangles, mesh.triangle_count, 1),
         ZT_OK);
     assert_int_equal(
         zt_bvh_of_boxes(&bvh, builder, clusters.boxes, clusters.count, ZT_BVH_LASTING), ZT_OK);
@@ -536,8 +536,8 @@ static void triangles_are_met_by_index(void **state) {
                3 * sizeof(uint32_t));
     m.triangle_count = 2 * count;
     zt_clusters clusters;
-    assert_int_equal(zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count),
-                     ZT_OK);
+    assert_int_equal(
+        zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count, 1), ZT_OK);
     s.clusters = all.clusters = &clusters;
     const int threads[] = {1, 2, 4};
     for (int k = 0; k < 3; k++) {
@@ -576,7 +576,8 @@ static void clusters_hold_each_triangle(void **state) {
     for (int32_t k = 0; k < m.triangle_count / 2; k++) /* half of them in one place */
         memcpy(m.triangles + 3 * k, m.triangles, 3 * sizeof(uint32_t));
     zt_clusters c;
-    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, m.triangle_count), ZT_OK);
+    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, m.triangle_count, 1),
+                     ZT_OK);
     int32_t *cluster_of = malloc((size_t)m.triangle_count * sizeof *cluster_of);
     memset(cluster_of, 0xff, (size_t)m.triangle_count * sizeof *cluster_of);
     for (int32_t k = 0; k < c.count; k++)
@@ -597,9 +598,27 @@ static void clusters_hold_each_triangle(void **state) {
     assert_true(c.count < m.triangle_count / 5);
     free(cluster_of);
     zt_clusters_free(&c);
-    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, 0), ZT_OK);
+    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, 0, 1), ZT_OK);
     assert_int_equal(c.count, 0);
     zt_clusters_free(&c);
+    free_mesh(&m);
+}
+
+/* However many threads make them. */
+static void clusters_are_the_same_for_any_threads(void **state) {
+    (void)state;
+    closed_mesh m = torus(200, 101);
+    zt_clusters alone, together;
+    assert_int_equal(zt_clusters_build(&alone, m.positions, m.triangles, m.triangle_count, 1),
+                     ZT_OK);
+    assert_int_equal(
+        zt_clusters_build(&together, m.positions, m.triangles, m.triangle_count, 3), ZT_OK);
+    assert_int_equal(alone.count, together.count);
+    size_t count = (size_t)alone.count;
+    assert_memory_equal(alone.clusters, together.clusters, count * sizeof *alone.clusters);
+    assert_memory_equal(alone.boxes, together.boxes, count * sizeof *alone.boxes);
+    zt_clusters_free(&alone);
+    zt_clusters_free(&together);
     free_mesh(&m);
 }
 
@@ -613,6 +632,7 @@ int main(void) {
         cmocka_unit_test(hierarchies_are_made_anew),
         cmocka_unit_test(visitors_may_look_further),
         cmocka_unit_test(clusters_hold_each_triangle),
+        cmocka_unit_test(clusters_are_the_same_for_any_threads),
         cmocka_unit_test(triangles_are_met_by_index),
         cmocka_unit_test(no_ray_gets_through_a_closed_mesh),
     };

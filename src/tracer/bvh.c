@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/diag.h"
+#include "base/pool.h"
 #include "tracer/embree.h"
 
 struct zt_bvh_builder {
@@ -16,7 +17,7 @@ struct zt_bvh_builder {
 zt_status zt_bvh_open(zt_bvh_builder **out, int threads, zt_listener listener) {
     zt_bvh_builder *builder = *out = calloc(1, sizeof *builder);
     if (!builder) return ZT_EMEMORY;
-    builder->threads = threads;
+    builder->threads = threads > 0 ? threads : zt_pool_core_count();
     builder->listener = listener;
     return ZT_OK;
 }
@@ -27,6 +28,8 @@ void zt_bvh_close(zt_bvh_builder **slot) {
     free(*slot);
     *slot = NULL;
 }
+
+int zt_bvh_threads(const zt_bvh_builder *builder) { return builder->threads; }
 
 static zt_status start(zt_bvh_builder *builder) {
     if (builder->embree) return ZT_OK;

@@ -35,7 +35,8 @@ typedef struct zt_bvh_box {
  * time; looking is legal from any number of threads. */
 typedef struct zt_bvh_builder zt_bvh_builder;
 zt_status zt_bvh_open(zt_bvh_builder **builder, int threads, zt_listener listener);
-void zt_bvh_close(zt_bvh_builder **builder); /* after all of its hierarchies */
+void zt_bvh_close(zt_bvh_builder **builder);       /* after all of its hierarchies */
+int zt_bvh_threads(const zt_bvh_builder *builder); /* at least 1 */
 
 /* How long a hierarchy is for: many frames, so that it is built well, or one, quickly. */
 typedef enum zt_bvh_life { ZT_BVH_LASTING, ZT_BVH_PASSING } zt_bvh_life;

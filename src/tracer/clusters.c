@@ -7,20 +7,34 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { BINS = 16, DEPTH_MAX = 60 };
+#include "base/pool.h"
 
-/* A triangle's box; its middle times two is low + high. */
+enum {
+    BINS = 16,
+    DEPTH_MAX = 60,
+    LATER_MAX = 256, /* parts that threads take, at most */
+    AT_ONCE = 1024,  /* clusters written by one task */
+    MANY = 10000     /* triangles that are worth the start of threads */
+};
+
+/* Four of each, so that a register holds them; the fourth means nothing. */
+typedef struct box4 {
+    alignas(16) float low[4], high[4];
+} box4;
+
+static const box4 empty_box = {{INFINITY, INFINITY, INFINITY, 0},
+                               {-INFINITY, -INFINITY, -INFINITY, 0}};
+
 typedef struct item {
-    float low[3], high[3];
+    box4 box;
     int32_t triangle;
+    int32_t leaf; /* how many, from here on, make a cluster; 0 within one */
 } item;
 
-static const zt_bvh_box empty_box = {{INFINITY, INFINITY, INFINITY},
-                                     {-INFINITY, -INFINITY, -INFINITY}};
-
 typedef struct bin {
-    zt_bvh_box box;
+    box4 box;
     int32_t count;
 } bin;
 
@@ -32,21 +46,21 @@ typedef struct cut {
 static inline float smaller(float a, float b) { return a < b ? a : b; }
 static inline float larger(float a, float b) { return a > b ? a : b; }
 
-static inline void include(zt_bvh_box *box, const float *low, const float *high) {
-    for (int i = 0; i < 3; i++) {
+static inline void include(box4 *box, const float *low, const float *high) {
+    for (int i = 0; i < 4; i++) {
         box->low[i] = smaller(box->low[i], low[i]);
         box->high[i] = larger(box->high[i], high[i]);
     }
 }
 
 /* Half the surface. */
-static float surface(const zt_bvh_box *b) {
+static float surface(const box4 *b) {
     float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
     return x * y + y * z + z * x;
 }
 
 static inline float middle(const item *it, int axis) {
-    return it->low[axis] * 0.5f + it->high[axis] * 0.5f;
+    return it->box.low[axis] * 0.5f + it->box.high[axis] * 0.5f;
 }
 
 static inline int bin_of(float at, float low, float scale) {
@@ -85,9 +99,9 @@ static float best_cut(cut *out, const bin *bins, int axis, float low, float scal
 
 static cut find_cut(const item *items, int32_t count) {
     cut found = {.axis = -1};
-    zt_bvh_box middles = empty_box;
+    box4 middles = empty_box;
     for (int32_t k = 0; k < count; k++) {
-        float at[3] = {middle(&items[k], 0), middle(&items[k], 1), middle(&items[k], 2)};
+        float at[4] = {middle(&items[k], 0), middle(&items[k], 1), middle(&items[k], 2), 0};
         include(&middles, at, at);
     }
     bin bins[3][BINS];
@@ -101,7 +115,7 @@ static cut find_cut(const item *items, int32_t count) {
         for (int axis = 0; axis < 3; axis++) {
             float at = middle(&items[k], axis);
             bin *b = &bins[axis][bin_of(at, middles.low[axis], scale[axis])];
-            include(&b->box, items[k].low, items[k].high);
+            include(&b->box, items[k].box.low, items[k].box.high);
             b->count++;
         }
     float best = INFINITY;
@@ -125,59 +139,114 @@ static int32_t part(item *items, int32_t count, cut at) {
     return left;
 }
 
-static void put_cluster(zt_clusters *out, const item *items, int32_t count,
-                        const float *positions, const uint32_t *triangles) {
-    zt_cluster *c = &out->clusters[out->count];
-    zt_bvh_box *box = &out->boxes[out->count++];
-    *box = empty_box;
-    for (int32_t k = 0; k < ZT_CLUSTER; k++) {
-        const item *it = &items[k < count ? k : count - 1];
-        c->triangles[k] = it->triangle;
-        include(box, it->low, it->high);
-        for (int corner = 0; corner < 3; corner++) {
-            const float *p =
-                positions + 3 * (int64_t)triangles[3 * (int64_t)it->triangle + corner];
-            for (int axis = 0; axis < 3; axis++) c->corners[corner][axis][k] = p[axis];
+/* Orders items so that clusters stand together, each marked where it begins. Ranges of up to
+ * `enough` are put off: listed, to be split on any thread. */
+typedef struct range {
+    item *items;
+    int32_t count, depth;
+} range;
+
+typedef struct work {
+    range later[LATER_MAX];
+    int later_count;
+    zt_clusters *out;
+    item *items;
+    int32_t *starts; /* of each cluster */
+    const float *positions;
+    const uint32_t *triangles;
+} work;
+
+static void split(work *w, range r, int32_t enough) {
+    while (r.count > ZT_CLUSTER) {
+        if (r.count <= enough && w->later_count < LATER_MAX) {
+            w->later[w->later_count++] = r;
+            return;
         }
+        cut at = find_cut(r.items, r.count);
+        bool found = at.axis >= 0 && r.depth < DEPTH_MAX;
+        int32_t left = found ? part(r.items, r.count, at) : r.count / 2;
+        split(w, (range){r.items, left, r.depth + 1}, enough);
+        r = (range){r.items + left, r.count - left, r.depth + 1};
     }
+    if (r.count > 0) r.items->leaf = r.count;
 }
 
-static void split(zt_clusters *out, item *items, int32_t count, const float *positions,
-                  const uint32_t *triangles, int depth) {
-    if (count <= ZT_CLUSTER) {
-        if (count > 0) put_cluster(out, items, count, positions, triangles);
-        return;
+static void split_range(void *user, int task, int worker) {
+    (void)worker;
+    work *w = user;
+    split(w, w->later[task], 0);
+}
+
+static void put_cluster(const work *w, int32_t index) {
+    const item *items = w->items + w->starts[index];
+    zt_cluster *c = &w->out->clusters[index];
+    box4 box = empty_box;
+    for (int32_t k = 0; k < ZT_CLUSTER; k++) {
+        const item *it = &items[k < items->leaf ? k : items->leaf - 1];
+        const uint32_t *corners = w->triangles + 3 * (int64_t)it->triangle;
+        c->triangles[k] = it->triangle;
+        include(&box, it->box.low, it->box.high);
+        for (int corner = 0; corner < 3; corner++)
+            for (int axis = 0; axis < 3; axis++)
+                c->corners[corner][axis][k] = w->positions[3 * (int64_t)corners[corner] + axis];
     }
-    cut at = find_cut(items, count);
-    int32_t left = at.axis >= 0 && depth < DEPTH_MAX ? part(items, count, at) : count / 2;
-    split(out, items, left, positions, triangles, depth + 1);
-    split(out, items + left, count - left, positions, triangles, depth + 1);
+    memcpy(w->out->boxes[index].low, box.low, sizeof w->out->boxes->low);
+    memcpy(w->out->boxes[index].high, box.high, sizeof w->out->boxes->high);
+}
+
+static void put_some(void *user, int task, int worker) {
+    (void)worker;
+    work *w = user;
+    int32_t end = w->out->count < (task + 1) * AT_ONCE ? w->out->count : (task + 1) * AT_ONCE;
+    for (int32_t index = task * AT_ONCE; index < end; index++) put_cluster(w, index);
+}
+
+/* On several threads, where there is enough to do for them and they can be had. */
+static void run(zt_pool *pool, int count, void (*task)(void *, int, int), work *w) {
+    if (pool) zt_pool_run(pool, count, task, w);
+    for (int i = 0; !pool && i < count; i++) task(w, i, 0);
+}
+
+static void bound_triangles(item *items, const float *positions, const uint32_t *triangles,
+                            int32_t count) {
+    for (int32_t i = 0; i < count; i++) {
+        items[i] = (item){.box = empty_box, .triangle = i};
+        for (int corner = 0; corner < 3; corner++) {
+            const float *p = positions + 3 * (int64_t)triangles[3 * (int64_t)i + corner];
+            const float at[4] = {p[0], p[1], p[2], 0};
+            include(&items[i].box, at, at);
+        }
+    }
 }
 
 zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint32_t *triangles,
-                            int32_t triangle_count) {
+                            int32_t triangle_count, int threads) {
     *out = (zt_clusters){0};
     size_t count = (size_t)triangle_count;
-    item *items = malloc(count * sizeof *items + 1);
-    out->clusters = aligned_alloc(64, (count + 1) * sizeof *out->clusters);
-    out->boxes = malloc((count + 1) * sizeof *out->boxes);
-    bool room = items && out->clusters && out->boxes;
-    for (int32_t i = 0; room && i < triangle_count; i++) {
-        zt_bvh_box box = empty_box;
-        for (int corner = 0; corner < 3; corner++) {
-            const float *p = positions + 3 * (int64_t)triangles[3 * (int64_t)i + corner];
-            include(&box, p, p);
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            items[i].low[axis] = box.low[axis];
-            items[i].high[axis] = box.high[axis];
-        }
-        items[i].triangle = i;
+    work w = {.out = out,
+              .items = aligned_alloc(16, (count + 1) * sizeof *w.items),
+              .starts = malloc((count + 1) * sizeof *w.starts),
+              .positions = positions,
+              .triangles = triangles};
+    zt_pool *pool = NULL;
+    if (threads > 1 && triangle_count >= MANY) zt_pool_open(&pool, threads);
+    if (w.items && w.starts) {
+        bound_triangles(w.items, positions, triangles, triangle_count);
+        split(&w, (range){w.items, triangle_count, 0}, triangle_count / (LATER_MAX / 4));
+        run(pool, w.later_count, split_range, &w);
+        for (int32_t i = 0; i < triangle_count; i += w.items[i].leaf)
+            w.starts[out->count++] = i;
+        out->clusters = aligned_alloc(64, ((size_t)out->count + 1) * sizeof *out->clusters);
+        out->boxes = malloc(((size_t)out->count + 1) * sizeof *out->boxes);
+        if (out->clusters && out->boxes)
+            run(pool, (out->count + AT_ONCE - 1) / AT_ONCE, put_some, &w);
     }
-    if (room) split(out, items, triangle_count, positions, triangles, 0);
-    free(items);
-    if (!room) zt_clusters_free(out);
-    return room ? ZT_OK : ZT_EMEMORY;
+    zt_pool_close(&pool);
+    free(w.items);
+    free(w.starts);
+    if (out->clusters && out->boxes) return ZT_OK;
+    zt_clusters_free(out);
+    return ZT_EMEMORY;
 }
 
 void zt_clusters_free(zt_clusters *clusters) {

@@ -24,9 +24,10 @@ typedef struct zt_clusters {
     int32_t count;
 } zt_clusters;
 
-/* `positions` are three finite floats for each vertex, `triangles` three indices each. */
+/* `positions` are three finite floats for each vertex, `triangles` three indices each. Many
+ * triangles are shared out among so many threads; the number changes nothing. ZT_EMEMORY. */
 zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint32_t *triangles,
-                            int32_t triangle_count);
+                            int32_t triangle_count, int threads);
 void zt_clusters_free(zt_clusters *clusters);
 
 #endif

@@ -58,7 +58,7 @@ static zt_status build_hull(zt_built_mesh *b) {
 static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
     const zt_mesh *mesh = b->mesh;
     ZT_TRY(zt_clusters_build(&b->clusters, mesh->positions, mesh->triangles,
-                             mesh->triangle_count));
+                             mesh->triangle_count, zt_bvh_threads(builder)));
     const zt_bvh_box *all = &b->hull->boxes[1];
     float size = 0;
     for (int axis = 0; axis < 3; axis++)
