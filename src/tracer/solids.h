@@ -76,16 +76,17 @@ static inline real stretch_meet(zt_stretch s, int32_t leaving) {
  */
 static inline zt_stretch slab_stretch(real f, real e, real low, real high) {
     real in = e < 0 ? f - high : low - f, out = e < 0 ? f - low : high - f;
-    return (zt_stretch){in / real_abs(e), out / real_abs(e)};
+    real scale = 1 / real_abs(e);
+    return (zt_stretch){in * scale, out * scale};
 }
 
 /* Within 1 of the origin, for a direction of the length whose square is a. */
 static inline zt_stretch ball_stretch(real fx, real fy, real fz, real ex, real ey, real ez,
                                       real a) {
-    real k = -real_dot(fx, fy, fz, ex, ey, ez) / a;
+    real scale = 1 / a, k = -real_dot(fx, fy, fz, ex, ey, ez) * scale;
     real gx = fx + k * ex, gy = fy + k * ey, gz = fz + k * ez;
     real inside = 1 - real_dot(gx, gy, gz, gx, gy, gz);
-    real half = real_sqrt(real_max(inside, 0) / a);
+    real half = real_sqrt(real_max(inside, 0) * scale);
     return (zt_stretch){inside < 0 ? REAL_INFINITY : k - half, k + half};
 }
 
@@ -93,11 +94,11 @@ static inline zt_stretch ball_stretch(real fx, real fy, real fz, real ex, real e
 static inline zt_stretch tube_stretch(real fx, real fy, real ex, real ey) {
     real a = ex * ex + ey * ey;
     bool along = a < REAL_ROUNDING * REAL_ROUNDING * REAL_ROUNDING * REAL_ROUNDING;
-    a = along ? 0 : a;
-    real k = along ? 0 : -(fx * ex + fy * ey) / a;
+    real scale = along ? REAL_INFINITY : 1 / a;
+    real k = along ? 0 : -(fx * ex + fy * ey) * scale;
     real gx = fx + k * ex, gy = fy + k * ey;
     real inside = 1 - (gx * gx + gy * gy);
-    real half = real_sqrt(real_max(inside, 0) / a);
+    real half = real_sqrt(real_max(inside, 0) * scale);
     return (zt_stretch){inside < 0 ? REAL_INFINITY : k - half, k + half};
 }
 
