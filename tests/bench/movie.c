@@ -1,0 +1,116 @@
+/* A whole film of the room to MP4, against ffmpeg that only encodes the same frames. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench.h"
+#include "image/develop.h"
+#include "measure.h"
+
+enum { ROUNDS = 3 };
+
+/* A ball that moves, so that no two frames are the same. */
+static const zt_override room[] = {
+    {"film.duration", "96"},
+    {"ball.center", "{ keys: { 0: [-1.2, 0.9, 0.8], 48: [1.7, 2, 0.3], 96: [1.7, 0.9, -1] } }"},
+    {NULL, NULL}};
+
+/* As src/encode/video.c asks x264 to, but without a picture to convert. */
+static char *const encode_only[] = {
+    "ffmpeg",      "-y",          "-f",         "rawvideo",    "-pixel_format",
+    "yuv420p",     "-video_size", "1280x720",   "-framerate",  "24",
+    "-i",          "frames.yuv",  "-c:v",       "libx264",     "-preset",
+    "medium",      "-crf",        "18",         "-g",          "48",
+    "-flags",      "+cgop",       "-threads",   "4",           "-x264-params",
+    "force-cfr=1", "-movflags",   "+faststart", "encoded.mp4", NULL};
+static char *const convert[] = {"ffmpeg",
+                                "-y",
+                                "-f",
+                                "rawvideo",
+                                "-pixel_format",
+                                "rgb24",
+                                "-video_size",
+                                "1280x720",
+                                "-framerate",
+                                "24",
+                                "-i",
+                                "frames.rgb",
+                                "-vf",
+                                "scale=out_color_matrix=bt709",
+                                "-pix_fmt",
+                                "yuv420p",
+                                "-f",
+                                "rawvideo",
+                                "frames.yuv",
+                                NULL};
+
+static spent render_film(void *user) {
+    const zt_animation *animation = user;
+    const zt_output_option options[] = {{"preset", "medium"}, {NULL, NULL}};
+    const char *target = scratch_path("film.mp4");
+    int64_t count = zt_animation_film(animation)->frame_count;
+    zt_renderer *renderer;
+    zt_output *output;
+    spent start = spent_now();
+    must(zt_renderer_open(&renderer, animation, &(zt_render_settings){0}, to_stderr), target);
+    zt_output_format format = zt_renderer_format(renderer);
+    format.frame_count = count;
+    must(zt_output_open(&output, target, &format, options, to_stderr), target);
+    must(zt_renderer_sequence(renderer, 0, count - 1, output, NULL), target);
+    must(zt_output_close(&output), target);
+    zt_renderer_close(&renderer);
+    return spent_per(spent_since(start), (double)count);
+}
+
+static spent encode_film(void *user) {
+    return spent_per(run_program(encode_only, 1), (double)zt_animation_film(user)->frame_count);
+}
+
+static spent render_frames(void *user) {
+    frames f =
+        frames_open(user, (zt_render_settings){0}, (int)zt_animation_film(user)->frame_count);
+    spent each = frames_run(&f);
+    frames_close(&f);
+    return each;
+}
+
+/* The film's frames as a raw file of the colors that x264 takes. */
+static void write_frames(const zt_animation *animation) {
+    FILE *file = fopen(scratch_path("frames.rgb"), "wb");
+    frames f = frames_open(animation, (zt_render_settings){0}, 1);
+    size_t row = (size_t)3 * (size_t)f.image->width, size = row * (size_t)f.image->height;
+    uint8_t *bytes = malloc(size);
+    must_be(file && bytes, "no file for raw frames");
+    for (int64_t i = 0; i < zt_animation_film(animation)->frame_count; i++) {
+        frames_run(&f);
+        zt_develop_rgb8(bytes, row, f.image, ZT_VIEW_RAW, 0, f.image->height);
+        must_be(fwrite(bytes, 1, size, file) == size, "cannot write raw frames");
+    }
+    must_be(fclose(file) == 0, "cannot write raw frames");
+    free(bytes);
+    frames_close(&f);
+    run_program(convert, 1);
+    remove(scratch_path("frames.rgb"));
+}
+
+void bench_movie(void) {
+    if (system("command -v ffmpeg >/dev/null") != 0) {
+        print_title("the film of the room to MP4: left out, there is no ffmpeg");
+        return;
+    }
+    zt_animation *animation = film_open("fig1b", room);
+    runner runners[] = {
+        {.name = "ffmpeg, only encoding", .run = encode_film, .user = animation},
+        {.name = "zoetrope, the whole film", .run = render_film, .user = animation},
+        {.name = "zoetrope, only rendering", .run = render_frames, .user = animation}};
+    write_frames(animation);
+    race(runners, 3, ROUNDS);
+    print_title("a film of the room, %lld frames of 1280 x 720 to MP4, x264 medium, each frame",
+                (long long)zt_animation_film(animation)->frame_count);
+    for (int i = 0; i < 3; i++) {
+        print_spent(runners[i].name, runners[i].median);
+        if (i == 1) print_ratio(runners[1].median.wall_s / runners[0].median.wall_s, -1.3);
+        print_end();
+    }
+    remove(scratch_path("frames.yuv"));
+    zt_animation_free(&animation);
+}
