@@ -1,5 +1,7 @@
 #include "description/normals.h"
 
+#include <stdbool.h>
+
 /* The unit normal of a triangle; zero where it has no area. */
 static vec3 face_normal(const vec3 corners[3]) {
     return vec3_normalize(
@@ -39,16 +41,29 @@ static void add_face_to_empty(vec3 *sums, const zt_mesh *mesh, int32_t triangle)
     }
 }
 
+static bool is_given(const float *n) { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
+
+/* 1, or -1 where the normals that are given point to the other side than the triangles wind. */
+static double side_of_given(const float *normals, const vec3 *sums, int32_t vertex_count) {
+    double agreed = 0;
+    for (int64_t i = 0; i < vertex_count; i++) {
+        const float *n = normals + 3 * i;
+        agreed += vec3_dot((vec3){(double)n[0], (double)n[1], (double)n[2]}, sums[i]);
+    }
+    return agreed < 0 ? -1 : 1;
+}
+
 zt_status zt_normals_complete(float *normals, const zt_mesh *mesh) {
     zt_arena scratch = {0};
     vec3 *sums = ZT_PUSH(&scratch, vec3, (size_t)mesh->vertex_count);
     if (!sums) return ZT_EMEMORY;
     for (int32_t i = 0; i < mesh->triangle_count; i++) add_face(sums, mesh, i);
     for (int32_t i = 0; i < mesh->triangle_count; i++) add_face_to_empty(sums, mesh, i);
+    double side = side_of_given(normals, sums, mesh->vertex_count);
     for (int64_t i = 0; i < mesh->vertex_count; i++) {
         float *n = normals + 3 * i;
-        if (n[0] != 0 || n[1] != 0 || n[2] != 0) continue;
-        vec3 sum = vec3_normalize(sums[i]);
+        if (is_given(n)) continue;
+        vec3 sum = vec3_normalize(vec3_scale(sums[i], side));
         if (vec3_max_abs(sum) == 0) sum.y = 1; /* no triangle with an area has it */
         n[0] = (float)sum.x;
         n[1] = (float)sum.y;
