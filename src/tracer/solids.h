@@ -61,7 +61,8 @@ static inline zt_stretch stretch_both(zt_stretch a, zt_stretch b) {
 static inline zt_stretch stretch_hull(zt_stretch a, zt_stretch b) {
     bool some_a = a.in <= a.out, some_b = b.in <= b.out;
     real in = some_a ? a.in : REAL_INFINITY, out = some_a ? a.out : -REAL_INFINITY;
-    return (zt_stretch){some_b & (b.in < in) ? b.in : in, some_b & (b.out > out) ? b.out : out};
+    return (zt_stretch){(some_b & (b.in < in)) ? b.in : in,
+                        (some_b & (b.out > out)) ? b.out : out};
 }
 
 /* Where a ray meets a convex solid that it crosses along a stretch. */

@@ -87,7 +87,7 @@ static inline real torus_root(const torus_ray *r, real p, torus_crossing c) {
         near = f < 0 ? x : near;
         far = f < 0 ? far : x;
         real next = x - f / slope;
-        x = (next >= near) & (next <= far) ? next : (real)0.5 * (near + far);
+        x = ((next >= near) & (next <= far)) ? next : (real)0.5 * (near + far);
     }
     real s = real_min(real_max(m + c.way * x, c.a), c.b);
 #pragma GCC unroll 16
@@ -112,7 +112,7 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     bool elsewhere = leaving == 0;
     real g2 = real_dot(r.gx, r.gy, r.gz, r.gx, r.gy, r.gz), g = real_sqrt(g2);
     real reach2 = (1 + p0 - g) * (1 + p0 + g), reach = real_sqrt(real_max(reach2, 0));
-    real low = (k > reach) & elsewhere ? -reach : -k;
+    real low = ((k > reach) & elsewhere) ? -reach : -k;
     /* Both are small for rays close to the axis, and then q is better known from across it. */
     real across2 = r.ex * r.ex + r.ey * r.ey, across = -(r.gx * r.ex + r.gy * r.ey);
     real p = g2 + (1 - p0) * (1 + p0) - 2 * across2;
