@@ -100,6 +100,14 @@ static void bad_normals(void **state) {
         assert_near(r.mesh.normals + 6, up, 0, bad[i]);
         forget(&r);
     }
+    reading turned; /* the others stand on the other side than the triangle winds */
+    read_text(&turned, ASCII_HEADER VERTICES(
+                           3) "property float nx\nproperty float ny\nproperty "
+                              "float nz\n" FACES(1) "end_header\n0 0 0 0 0 -1\n1 0 0 0 0 0\n"
+                                                    "0 1 0 0 0 -1\n3 0 1 2");
+    for (int v = 0; v < 3; v++)
+        assert_near(mesh_of(&turned)->normals + 3 * v, (double[3]){0, 0, -1}, 0, "turned");
+    forget(&turned);
     const double numbers[] = {NAN, INFINITY, -INFINITY};
     for (int format = LITTLE; format <= BIG; format++)
         for (int i = 0; i < 3; i++) {

@@ -10,7 +10,8 @@
 /* Gives each vertex whose three numbers in `normals` are zero a unit one: the sum of the
  * normals of the triangles that have this very vertex, each as much as the angle it has there
  * (Thuermer and Wuethrich, "Computing vertex normals from polygonal facets", Journal of
- * Graphics Tools 3(1), 1998). Where that is nothing, the normal of one of them. ZT_EMEMORY. */
+ * Graphics Tools 3(1), 1998), on the side that most of the given ones are on. Where the sum is
+ * nothing, the normal of one of the triangles. ZT_EMEMORY. */
 zt_status zt_normals_complete(float *normals, const zt_mesh *mesh);
 
 /* Makes all of a mesh's normals, in the arena. ZT_EMEMORY. */
