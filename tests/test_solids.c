@@ -323,7 +323,7 @@ static void capsules_are_met(void **state) { (void)state, show(CAPSULE); }
 static void tori_are_met(void **state) { (void)state, show(TORUS); }
 
 int main(int argc, char **argv) {
-    if (argc > 1) rays = atoi(argv[1]);
+    if (argc > 1) rays = (int)strtol(argv[1], NULL, 10);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(disks_are_met), cmocka_unit_test(boxes_are_met),
         cmocka_unit_test(balls_are_met), cmocka_unit_test(cylinders_are_met),

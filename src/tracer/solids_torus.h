@@ -141,7 +141,7 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     torus_crossing c;
     bool from_top = top < depth;
     c.sign = from_top ? -1 : 1;
-    c.way = (inside ? 1 : -1) * c.sign;
+    c.way = inside ? c.sign : -c.sign;
     c.m = from_top ? t.high : bottom;
     c.height = real_max(from_top ? top : depth, 0);
     c.span = top < REAL_INFINITY ? real_abs(t.high - bottom) : reach + real_abs(bottom);
