@@ -17,11 +17,7 @@
 
 /* How many steps; measured by tests/test_solids.c. Constants, so that loops are unrolled and
  * the loop around them becomes wide. */
-#if defined ZT_REAL_IS_DOUBLE
 enum { TORUS_CUBIC_STEPS = 5, TORUS_QUARTIC_STEPS = 14, TORUS_LAST_STEPS = 2 };
-#else
-enum { TORUS_CUBIC_STEPS = 4, TORUS_QUARTIC_STEPS = 11, TORUS_LAST_STEPS = 2 };
-#endif
 
 /* A unit direction, and the point of the ray nearest to the middle. */
 typedef struct torus_ray {
