@@ -41,7 +41,6 @@ set(doors
     "yaml.h|description/document.c"
     "embree|tracer/(embree|meshes).c"
     "libav|encode/video.c"
-    "libsw|encode/video.c"
     "librsvg/|encode/raster.c")
 
 # Headers of C, POSIX and the compiler that any file may include, and those of C++, which have no ending.

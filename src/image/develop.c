@@ -95,9 +95,9 @@ static uint8_t code_at(const uint32_t *table, uint32_t place) {
     return (uint8_t)((table[place >> BUCKET_BITS] + (place & 0xffff)) >> BUCKET_BITS);
 }
 
-static void develop_pixel(uint8_t *rgb, const float *pixel, const uint32_t *table) {
+static void develop_pixel(uint8_t *rgbx, const float *pixel, const uint32_t *table) {
     uint4 places = table_places(pixel);
-    for (int c = 0; c < 3; c++) rgb[c] = code_at(table, places[c]);
+    for (int c = 0; c < 4; c++) rgbx[c] = code_at(table, places[c]);
 }
 
 #if defined __x86_64__
@@ -118,45 +118,55 @@ WIDE static inline __m256i codes_of_two(const float *pixels, const uint32_t *tab
     return _mm256_srli_epi32(_mm256_add_epi32(steps, within), BUCKET_BITS);
 }
 
-/* Develops the pixels of a row by fours; returns how many that are. */
-WIDE static int develop_fours(uint8_t *rgb, const float *pixel, int width,
+/* Develops pixels by fours; returns how many that are. */
+WIDE static int develop_fours(uint8_t *rgbx, const float *pixel, int count,
                               const uint32_t *table) {
-    /* Of pixels 0 and 2 in one half and 1 and 3 in the other to their places among 12 bytes. */
-    const __m256i spread =
-        _mm256_setr_epi8(0, 1, 2, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1,
-                         0, 1, 2, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1);
     int x = 0;
-    for (; x + 4 <= width; x += 4, pixel += 16, rgb += 12) {
+    for (; x + 4 <= count; x += 4, pixel += 16, rgbx += 16) {
         __m256i words =
             _mm256_packus_epi32(codes_of_two(pixel, table), codes_of_two(pixel + 8, table));
-        __m256i halves = _mm256_shuffle_epi8(_mm256_packus_epi16(words, words), spread);
-        __m128i bytes =
-            _mm_or_si128(_mm256_castsi256_si128(halves), _mm256_extracti128_si256(halves, 1));
-        memcpy(rgb, &bytes, 12);
+        __m256i bytes = _mm256_packus_epi16(words, words);
+        /* One half has pixels 0 and 2, the other 1 and 3. */
+        __m128i four = _mm_unpacklo_epi32(_mm256_castsi256_si128(bytes),
+                                          _mm256_extracti128_si256(bytes, 1));
+        memcpy(rgbx, &four, 16);
     }
     return x;
 }
 
 static bool can_be_wide(void) { return __builtin_cpu_supports("avx2"); }
 #else
-static int develop_fours(uint8_t *rgb, const float *pixel, int width, const uint32_t *table) {
-    (void)rgb, (void)pixel, (void)width, (void)table;
+static int develop_fours(uint8_t *rgbx, const float *pixel, int count, const uint32_t *table) {
+    (void)rgbx, (void)pixel, (void)count, (void)table;
     return 0;
 }
 
 static bool can_be_wide(void) { return false; }
 #endif
 
-void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
-                     int first, int last) {
+void zt_develop_rgbx8(uint8_t *bytes, const float *pixels, int count, zt_view view) {
     call_once(&tables_once, make_tables);
     const uint32_t *table = tables[view];
-    const bool wide = can_be_wide();
-    for (int y = first; y < last; y++, bytes += stride) {
-        const float *row = image->pixels + (size_t)y * (size_t)image->width * 4;
-        int x = wide ? develop_fours(bytes, row, image->width, table) : 0;
-        for (; x < image->width; x++) develop_pixel(bytes + 3 * x, row + 4 * (size_t)x, table);
+    int x = can_be_wide() ? develop_fours(bytes, pixels, count, table) : 0;
+    for (; x < count; x++) develop_pixel(bytes + 4 * x, pixels + 4 * x, table);
+}
+
+/* One row, a piece at a time. */
+static void develop_row(uint8_t *rgb, const float *pixels, int width, zt_view view) {
+    enum { PIECE = 64 };
+    uint8_t rgbx[4 * PIECE];
+    for (int x = 0; x < width; x += PIECE) {
+        int count = width - x < PIECE ? width - x : PIECE;
+        zt_develop_rgbx8(rgbx, pixels + 4 * (size_t)x, count, view);
+        for (int i = 0; i < count; i++, rgb += 3) memcpy(rgb, rgbx + 4 * i, 3);
     }
+}
+
+void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
+                     int first, int last) {
+    for (int y = first; y < last; y++, bytes += stride)
+        develop_row(bytes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width,
+                    view);
 }
 
 void zt_develop_rgb16(uint16_t *values, size_t stride, const zt_image *image, zt_view view,
