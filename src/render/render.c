@@ -5,19 +5,25 @@
 #include <string.h>
 
 #include "base/diag.h"
+#include "tracer/isa.h"
 #include "tracer/sampler.h"
 
 enum { TILE_SIDE = 16 };
 static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
 
 struct zt_render_work {
-    int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each ray's pixel within a tile */
+    int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each pixel within a tile */
     struct render_thread {
-        int32_t column[ZT_BATCH], row[ZT_BATCH]; /* the pixel of each ray */
-        float x[ZT_BATCH], y[ZT_BATCH];          /* its place in the picture, pixels */
+        /* The pixels of a block, and what their samples add up to. */
+        alignas(64) int32_t column[ZT_BATCH];
+        alignas(64) int32_t row[ZT_BATCH];
+        zt_pixel_seeds seeds[ZT_BATCH];
+        zt_radiance sum;
+        alignas(64) int32_t taken[ZT_BATCH]; /* samples in the sum */
+        /* A batch: some samples of each pixel, one after the other. */
+        float x[ZT_BATCH], y[ZT_BATCH]; /* places in the picture, pixels */
         zt_rays rays;
-        zt_radiance light, sum;
-        int32_t taken[ZT_BATCH]; /* samples in the sum */
+        zt_radiance light;
         void *kernel; /* what it works with */
     } * threads;
 };
@@ -39,14 +45,15 @@ typedef struct tile {
 
 static int min_int(int a, int b) { return a < b ? a : b; }
 
-/* The pixels of a tile in blocks of 4 x 4, so that rays that travel in one packet are close
- * together in both directions. */
+/* The pixels of a tile in the order of Morton's curve, so that each run of 4, 16 or 64 of them is
+ * a square: rays that travel in one packet are close together in both directions. */
 static void order_pixels(zt_render_work *work) {
-    enum { BLOCK = 4, ACROSS = TILE_SIDE / BLOCK };
     for (int i = 0; i < ZT_BATCH; i++) {
-        int block = i / (BLOCK * BLOCK), within = i % (BLOCK * BLOCK);
-        work->column[i] = block % ACROSS * BLOCK + within % BLOCK;
-        work->row[i] = block / ACROSS * BLOCK + within / BLOCK;
+        work->column[i] = work->row[i] = 0;
+        for (int bit = 0; bit < 4; bit++) {
+            work->column[i] |= (i >> (2 * bit) & 1) << bit;
+            work->row[i] |= (i >> (2 * bit + 1) & 1) << bit;
+        }
     }
 }
 
@@ -64,50 +71,52 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
     return ZT_OK;
 }
 
-/* Lists the pixels of a tile; those beyond the edge of the picture are left out. */
-static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area) {
-    int32_t *restrict column = own->column, *restrict row = own->row;
-    if (area.width == TILE_SIDE && area.height == TILE_SIDE) {
-        for (int i = 0; i < ZT_BATCH; i++) {
-            column[i] = area.x + work->column[i];
-            row[i] = area.y + work->row[i];
-        }
-        return ZT_BATCH;
-    }
+/* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are left
+ * out. */
+static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area,
+                       int first, int most, bool seeds) {
     int count = 0;
-    for (int i = 0; i < ZT_BATCH; i++) {
-        column[count] = area.x + work->column[i];
-        row[count] = area.y + work->row[i];
+    for (int i = first; i < first + most; i++) {
+        own->column[count] = area.x + work->column[i];
+        own->row[count] = area.y + work->row[i];
         count += work->column[i] < area.width && work->row[i] < area.height;
     }
+    for (int i = 0; seeds && i < count; i++)
+        own->seeds[i] = zt_sample_seeds(own->column[i], own->row[i]);
     return count;
 }
 
-/* Adds a sample of each pixel to the sums; returns how many were not finite. */
-static int add_samples(struct render_thread *own, int count) {
-    const zt_radiance *light = &own->light;
+/* Adds a sample of each pixel, from `first` in the batch on, to the sums; returns how many were
+ * not finite. */
+ZT_CLONES static int add_samples(zt_radiance *restrict sum, int32_t *restrict taken,
+                                 const zt_radiance *restrict light, int first, int count) {
     int left_out = 0;
     for (int i = 0; i < count; i++) {
-        float r = light->r[i], g = light->g[i], b = light->b[i];
+        float r = light->r[first + i], g = light->g[first + i], b = light->b[first + i];
         /* Infinities and NaN, alone of all numbers, are not 0 when taken from themselves. */
         bool finite = (r - r) + (g - g) + (b - b) == 0;
-        own->sum.r[i] += finite ? r : 0;
-        own->sum.g[i] += finite ? g : 0;
-        own->sum.b[i] += finite ? b : 0;
-        own->taken[i] += finite;
+        sum->r[i] += finite ? r : 0;
+        sum->g[i] += finite ? g : 0;
+        sum->b[i] += finite ? b : 0;
+        taken[i] += finite;
         left_out += !finite;
     }
     return left_out;
 }
 
-static void fill_pixels(zt_image *image, struct render_thread *own, int count) {
-    zt_radiance *sum = &own->sum;
+/* Makes the sums the means. */
+ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict taken,
+                              int count) {
     for (int i = 0; i < count; i++) {
-        float share = own->taken[i] ? 1 / (float)own->taken[i] : 0;
+        float share = taken[i] ? 1 / (float)taken[i] : 0;
         sum->r[i] *= share;
         sum->g[i] *= share;
         sum->b[i] *= share;
     }
+}
+
+static void fill_pixels(zt_image *image, const struct render_thread *own, int count) {
+    const zt_radiance *sum = &own->sum;
     for (int i = 0; i < count; i++) {
         size_t at = (size_t)own->row[i] * (size_t)image->width + (size_t)own->column[i];
         memcpy(image->pixels + 4 * at, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1},
@@ -115,29 +124,46 @@ static void fill_pixels(zt_image *image, struct render_thread *own, int count) {
     }
 }
 
+/* All samples of some pixels of a tile, as many of each in a batch as there is room for. */
+static bool render_block(frame *f, struct render_thread *own, tile area, int first, int most) {
+    const zt_render_job *job = f->job;
+    int left_out = 0, count = list_pixels(own, f->work, area, first, most, job->samples > 1);
+    if (count == 0) return true;
+    memset(&own->sum, 0, sizeof own->sum);
+    memset(own->taken, 0, sizeof own->taken);
+    int together = ZT_BATCH / count;
+    for (int done = 0; done < job->samples; done += together) {
+        if (job->stopped && job->stopped(job->user)) return false;
+        int now = min_int(together, job->samples - done);
+        for (int k = 0; k < now; k++)
+            zt_sample_pixels(own->x + k * count, own->y + k * count, own->column, own->row,
+                             own->seeds, count, done + k, job->samples);
+        zt_lens_rays(&own->rays, &job->lens, own->x, own->y, now * count);
+        job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
+        for (int k = 0; k < now; k++)
+            left_out += add_samples(&own->sum, own->taken, &own->light, k * count, count);
+    }
+    average(&own->sum, own->taken, count);
+    fill_pixels(f->image, own, count);
+    if (left_out) atomic_fetch_add_explicit(&f->left_out_count, left_out, memory_order_relaxed);
+    return true;
+}
+
+/* How many pixels share a batch: the more samples each takes, the fewer, so that the rays of a
+ * batch stay close together. Blocks of a tile are squares of these many pixels. */
+static int block_size(int samples) { return samples >= 16 ? 16 : samples >= 4 ? 64 : ZT_BATCH; }
+
 static void render_tile(void *user, int index, int worker) {
     frame *f = user;
-    const zt_render_job *job = f->job;
-    if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return;
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
                  min_int(TILE_SIDE, f->image->height - y)};
-    struct render_thread *own = &f->work->threads[worker];
-    memset(&own->sum, 0, sizeof own->sum);
-    memset(own->taken, 0, sizeof own->taken);
-    int left_out = 0, count = list_pixels(own, f->work, area);
-    for (int sample = 0; sample < job->samples; sample++) {
-        if (job->stopped && job->stopped(job->user)) {
+    int most = block_size(f->job->samples);
+    for (int first = 0; first < ZT_BATCH; first += most) {
+        if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return;
+        if (!render_block(f, &f->work->threads[worker], area, first, most))
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
-            return;
-        }
-        zt_sample_pixels(own->x, own->y, own->column, own->row, count, sample, job->samples);
-        zt_lens_rays(&own->rays, &job->lens, own->x, own->y, count);
-        job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
-        left_out += add_samples(own, count);
     }
-    fill_pixels(f->image, own, count);
-    if (left_out) atomic_fetch_add_explicit(&f->left_out_count, left_out, memory_order_relaxed);
 }
 
 zt_status zt_render(zt_image *image, int64_t *left_out_count, const zt_render_job *job,

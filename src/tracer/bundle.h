@@ -58,16 +58,20 @@ static inline zt_bundle zt_bundle_to(zt_box origins, real3 target, int32_t sourc
     return b;
 }
 
+/* Of the second of two numbers that is none, the first one is left. */
+static inline double least_of(double a, double b) { return b < a ? b : a; }
+static inline double most_of(double a, double b) { return b > a ? b : a; }
+
 /* Narrows the distances enter … leave to those at which some ray of a bundle may be between the
  * two sides of a box across one axis, by interval arithmetic: `near` and `far` are how long the
  * way there is at least and at most, `slow` and `fast` the share of it that a step goes. What
  * is no number narrows nothing. */
 static inline void zt_narrow(double *enter, double *leave, double near, double far, double slow,
                              double fast) {
-    if (near > 0) *enter = fmax(*enter, fast <= 0 ? INFINITY : near / fast);
-    if (far < 0) *enter = fmax(*enter, slow >= 0 ? INFINITY : far / slow);
-    if (slow > 0) *leave = fmin(*leave, far / slow);
-    if (fast < 0) *leave = fmin(*leave, near / fast);
+    if (near > 0) *enter = most_of(*enter, fast <= 0 ? INFINITY : near / fast);
+    if (far < 0) *enter = most_of(*enter, slow >= 0 ? INFINITY : far / slow);
+    if (slow > 0) *leave = least_of(*leave, far / slow);
+    if (fast < 0) *leave = least_of(*leave, near / fast);
 }
 
 /* False only where no ray of a bundle meets a box, which is grown by more than the roundings of
@@ -95,8 +99,8 @@ static inline void zt_span(double *low, double *high, real3 n, const zt_box *box
     double x0 = (double)n.x * (double)box->low.x, x1 = (double)n.x * (double)box->high.x;
     double y0 = (double)n.y * (double)box->low.y, y1 = (double)n.y * (double)box->high.y;
     double z0 = (double)n.z * (double)box->low.z, z1 = (double)n.z * (double)box->high.z;
-    *low = fmin(x0, x1) + fmin(y0, y1) + fmin(z0, z1);
-    *high = fmax(x0, x1) + fmax(y0, y1) + fmax(z0, z1);
+    *low = least_of(x0, x1) + least_of(y0, y1) + least_of(z0, z1);
+    *high = most_of(x0, x1) + most_of(y0, y1) + most_of(z0, z1);
 }
 
 /* False only where no ray of a bundle meets a plane: all begin on one side of it, and run away

@@ -63,6 +63,7 @@ static void begin(work *restrict w, const zt_rays *restrict given) {
     zt_origins *restrict from = &w->from;
     w->rays.from = w->shadow.from = &w->from;
     rays->count = given->count;
+    w->points.moved = false;
     int padded = zt_batch_padded(given->count);
     WIDE_LOOP for (int i = 0; i < padded; i++) {
         real x = (real)given->ox[i], y = (real)given->oy[i], z = (real)given->oz[i];
@@ -90,6 +91,7 @@ static void keep_hits(work *restrict w) {
     WIDE_LOOP for (int i = 0; i < padded; i++) w->wanted[i] = rays->hit[i] >= 0;
     if (all_wanted(w, count)) return;
     rays->count = list_wanted(w->list, w->wanted, count);
+    p->moved = true;
     padded = zt_batch_padded(rays->count);
     /* Numbers in the list are no less than their places, so that moving down overwrites nothing
      * that is still wanted. */
@@ -189,14 +191,20 @@ static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box
     }
 }
 
+static inline void deliver_point(zt_radiance *restrict light, const work *restrict w, int i,
+                                 int k) {
+    light->r[i] += (float)(w->points.weight[k] * w->sum_r[k]);
+    light->g[i] += (float)(w->points.weight[k] * w->sum_g[k]);
+    light->b[i] += (float)(w->points.weight[k] * w->sum_b[k]);
+}
+
 static void deliver(zt_radiance *restrict light, const work *restrict w) {
-    const zt_points *restrict p = &w->points;
-    WIDE_LOOP for (int k = 0; k < p->count; k++) {
-        int32_t i = p->pixel[k];
-        light->r[i] += (float)(p->weight[k] * w->sum_r[k]);
-        light->g[i] += (float)(p->weight[k] * w->sum_g[k]);
-        light->b[i] += (float)(p->weight[k] * w->sum_b[k]);
-    }
+    int padded = zt_batch_padded(w->points.count);
+    if (w->points.moved)
+        for (int k = 0; k < w->points.count; k++)
+            deliver_point(light, w, w->points.pixel[k], k);
+    else
+        WIDE_LOOP for (int k = 0; k < padded; k++) deliver_point(light, w, k, k);
 }
 
 /* Turns ray k, which ended at point k, to its mirrored direction. */
@@ -230,6 +238,7 @@ static void mirror(work *restrict w) {
         return;
     }
     rays->count = list_wanted(w->list, w->wanted, p->count);
+    p->moved = true;
     padded = zt_batch_padded(rays->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) { /* moving down, as in keep_hits */
         int32_t i = w->list[k];

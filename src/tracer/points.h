@@ -22,6 +22,7 @@ typedef struct zt_points {
     alignas(64) int32_t closed[ZT_BATCH]; /* as in zt_surface */
     int32_t source; /* the primitive that they all lie on, none of them inside it, or -1 */
     int count;
+    bool moved; /* some rays have gone, so that point k may not be that of ray k any more */
 } zt_points;
 
 /* Moves the rays of a batch, all of which have hit something, to where they end, and finds the
