@@ -14,8 +14,9 @@
 #define LOOK_FURTHER (1 + 0x1p-18f)
 #define BEFORE       (1 - (real)0x1p-6)
 
-/* How many times a hull is halved for a look at it. */
-enum { HULL_LEVEL = 3 };
+/* How many times a hull is halved for a look at it, and from how many rays of a group on it is
+ * quicker to ask them all about one triangle than one about all triangles of a cluster. */
+enum { HULL_LEVEL = 3, LANES_WORTH = 4 };
 
 /* Some rays of a batch on their way through a mesh or a crowd. */
 typedef struct search {
@@ -193,10 +194,18 @@ static void pack(search *restrict s, int count) {
 static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     search *s = user;
     const zt_cluster *cluster = &s->placed->built->clusters.clusters[box];
-    for (; set; set &= set - 1) {
-        int j = first + __builtin_ctz(set);
-        if (zt_meet_cluster(&s->t[j], &s->part[j], cluster, &s->leaning, j))
-            s->packed.far[j] = s->any ? -1 : (float)s->t[j] * LOOK_FURTHER;
+    uint32_t found = 0;
+    if (__builtin_popcount(set) >= LANES_WORTH && zt_lean_alike(&s->leaning, first, set))
+        found = zt_meet_cluster_lanes(s->t, s->part, cluster, &s->leaning, first, set);
+    else
+        for (; set; set &= set - 1) {
+            int j = first + __builtin_ctz(set);
+            if (zt_meet_cluster(&s->t[j], &s->part[j], cluster, &s->leaning, j))
+                found |= 1u << (j - first);
+        }
+    for (; found; found &= found - 1) {
+        int j = first + __builtin_ctz(found);
+        s->packed.far[j] = s->any ? -1 : (float)s->t[j] * LOOK_FURTHER;
     }
 }
 
