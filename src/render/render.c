@@ -45,8 +45,8 @@ typedef struct tile {
 
 static int min_int(int a, int b) { return a < b ? a : b; }
 
-/* The pixels of a tile in the order of Morton's curve, so that each run of 4, 16 or 64 of them is
- * a square: rays that travel in one packet are close together in both directions. */
+/* The pixels of a tile in the order of Morton's curve, so that each run of 4, 16 or 64 of them
+ * is a square: rays that travel in one packet are close together in both directions. */
 static void order_pixels(zt_render_work *work) {
     for (int i = 0; i < ZT_BATCH; i++) {
         work->column[i] = work->row[i] = 0;
@@ -71,8 +71,8 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
     return ZT_OK;
 }
 
-/* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are left
- * out. */
+/* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are
+ * left out. */
 static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area,
                        int first, int most, bool seeds) {
     int count = 0;

@@ -28,7 +28,8 @@ typedef struct zt_accuracy {
     double seen;           /* what may be seen of that, likewise */
 } zt_accuracy;
 
-/* One surface as it was made ready, in the space relative to the camera, in double precision. */
+/* One surface as it was made ready, in the space relative to the camera, in double precision.
+ */
 typedef struct zt_extent {
     int32_t object;
     bool flat;       /* a plane, disk or triangle: of points p with normal . p = distance */

@@ -53,8 +53,8 @@ static inline zt_bundle zt_bundle_to(zt_box origins, real3 target, int32_t sourc
     zt_bundle b = {.origins = origins, .has_target = true, .target = target, .source = source};
     b.directions.low = (real3){target.x - origins.high.x, target.y - origins.high.y,
                                target.z - origins.high.z};
-    b.directions.high = (real3){target.x - origins.low.x, target.y - origins.low.y,
-                                target.z - origins.low.z};
+    b.directions.high =
+        (real3){target.x - origins.low.x, target.y - origins.low.y, target.z - origins.low.z};
     return b;
 }
 
@@ -110,7 +110,7 @@ static inline bool zt_bundle_meets_plane(const zt_bundle *b, real3 n, real dista
     zt_span(&low, &high, n, &b->origins);
     double room = (double)((zt_box_size(&b->origins) + real_abs(distance)) *
                            (BOX_ROUNDINGS * REAL_ROUNDING));
-    bool below = high < (double)distance - room, above = low > (double)distance + room;
+    bool below = high<(double)distance - room, above = low>(double) distance + room;
     if (!below && !above) return true;
     if (b->has_target) {
         zt_box target = {b->target, b->target};

@@ -338,8 +338,7 @@ static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *me
         probes[i].object = probes[i].part = -1;
         probes[i].lit = 0;
     }
-    zt_bundle bundle =
-        bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
+    zt_bundle bundle = bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
     intersect(&w->rays, &bundle, tracer, ZT_RUNNING_APART);
     keep_hits(w);
     if (w->rays.count == 0) return;

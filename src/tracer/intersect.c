@@ -42,7 +42,7 @@ static inline int32_t leaving(int32_t source, int32_t index) {
             rays->hit[i] = ((t > near) & (t * (1 + TIE) + near < rays->t[i])) ? 0 : hit;       \
         }                                                                                      \
     }                                                                                          \
-    static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,        \
+    static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,         \
                              const zt_primitive *p, int32_t index, int first, real tie,        \
                              bool any) {                                                       \
         const zt_primitive own = *p;                                                           \
@@ -51,8 +51,9 @@ static inline int32_t leaving(int32_t source, int32_t index) {
             real t = DISTANCE(kind, i), nearest = rays->t[i], near = from->near[i];            \
             int32_t hit = rays->hit[i];                                                        \
             real room = (t + near / TIE) * (index > hit ? before : after);                     \
-            bool nearer = ((t + room < nearest) | ((room == 0) & (t == nearest) & (index < hit))) &                                                     \
-                          (t > (any ? near : 0));                                              \
+            bool nearer =                                                                      \
+                ((t + room < nearest) | ((room == 0) & (t == nearest) & (index < hit))) &      \
+                (t > (any ? near : 0));                                                        \
             rays->t[i] = nearer ? t : nearest;                                                 \
             rays->hit[i] = nearer ? index : hit;                                               \
         }                                                                                      \
@@ -70,11 +71,13 @@ DEFINE_LOOPS(torus)
 
 /* The loop of a kind, by the kind; none of meshes. */
 #define LOOPS(name)                                                                            \
-    {[ZT_PRIMITIVE_PLANE] = plane_##name,       [ZT_PRIMITIVE_SPHERE] = sphere_##name,         \
-     [ZT_PRIMITIVE_TRIANGLE] = triangle_##name, [ZT_PRIMITIVE_BALL] = ball_##name,   \
-     [ZT_PRIMITIVE_DISK] = disk_##name,         [ZT_PRIMITIVE_BOX] = box_##name,               \
-     [ZT_PRIMITIVE_CYLINDER] = cylinder_##name, [ZT_PRIMITIVE_CONE] = cone_##name,             \
-     [ZT_PRIMITIVE_CAPSULE] = capsule_##name,   [ZT_PRIMITIVE_TORUS] = torus_##name}
+    {                                                                                          \
+        [ZT_PRIMITIVE_PLANE] = plane_##name, [ZT_PRIMITIVE_SPHERE] = sphere_##name,            \
+        [ZT_PRIMITIVE_TRIANGLE] = triangle_##name, [ZT_PRIMITIVE_BALL] = ball_##name,          \
+        [ZT_PRIMITIVE_DISK] = disk_##name, [ZT_PRIMITIVE_BOX] = box_##name,                    \
+        [ZT_PRIMITIVE_CYLINDER] = cylinder_##name, [ZT_PRIMITIVE_CONE] = cone_##name,          \
+        [ZT_PRIMITIVE_CAPSULE] = capsule_##name, [ZT_PRIMITIVE_TORUS] = torus_##name           \
+    }
 
 typedef void loop(zt_batch *restrict rays, const zt_origins *restrict from,
                   const zt_primitive *p, int32_t index, int count, real tie);
@@ -91,8 +94,8 @@ void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int3
     lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie, any);
 }
 
-/* Whether a primitive can be met by a ray of a bundle. What all rays leave, and none inwards, is
- * not met again unless it bulges inwards. */
+/* Whether a primitive can be met by a ray of a bundle. What all rays leave, and none inwards,
+ * is not met again unless it bulges inwards. */
 static bool may_meet(const zt_bundle *b, const zt_primitive *p, int32_t index) {
     bool bulges = p->kind == ZT_PRIMITIVE_TORUS || p->kind == ZT_PRIMITIVE_MESH;
     if (b->source == index && !bulges) return false;

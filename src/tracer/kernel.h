@@ -45,8 +45,8 @@ typedef struct zt_probe {
     /* The answer. `object` is an index in the scene, or -1 where nothing is hit: then the rest
      * says nothing. */
     int32_t object;
-    int32_t part;    /* of a mesh: which triangle, else -1 */
-    double distance; /* in the unit of space */
+    int32_t part;       /* of a mesh: which triangle, else -1 */
+    double distance;    /* in the unit of space */
     vec3 point, normal; /* the normal is unit and faces the ray's origin */
     uint64_t lit;       /* bit i: nothing hides the scene's light number i (a point light, < 64,
                            before which the surface faces) */

@@ -1,6 +1,6 @@
-/* Triangle meshes, and what makes them fast to hit: the run owns a hierarchy and a hull for each
- * mesh, in the mesh's own space, built when first needed, and the hierarchy of what a frame has
- * many of. */
+/* Triangle meshes, and what makes them fast to hit: the run owns a hierarchy and a hull for
+ * each mesh, in the mesh's own space, built when first needed, and the hierarchy of what a
+ * frame has many of. */
 #ifndef ZT_TRACER_MESHES_H
 #define ZT_TRACER_MESHES_H
 

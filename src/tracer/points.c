@@ -1,5 +1,5 @@
-/* The points where rays end. Loops run over whole groups of lanes: what lies beyond the count is
- * computed and never used, but must be safe to compute. Compiled once for each width of
+/* The points where rays end. Loops run over whole groups of lanes: what lies beyond the count
+ * is computed and never used, but must be safe to compute. Compiled once for each width of
  * instructions and each precision (tracer/isa.h). */
 #include "tracer/points.h"
 
@@ -28,8 +28,8 @@ static void go_to_ends(zt_points *restrict w, const zt_batch *restrict rays,
     }
 }
 
-/* The looks of point k; the normal, and the corrected position, where its kind is one of which a
- * zt_surface says all. A row of zeros leaves the position as it is. */
+/* The looks of point k; the normal, and the corrected position, where its kind is one of which
+ * a zt_surface says all. A row of zeros leaves the position as it is. */
 static inline void find_surface(zt_points *restrict w, zt_origins *restrict from, int k,
                                 const zt_surface *s) {
     real qx = from->x[k] - s->center.x, qy = from->y[k] - s->center.y,
@@ -94,9 +94,10 @@ static int list_kind(int32_t *restrict list, const zt_points *restrict w,
             real3 rx = p->solid.rows[0], ry = p->solid.rows[1], rz = p->solid.rows[2];         \
             real gx = from->x[k] - p->solid.center.x, gy = from->y[k] - p->solid.center.y,     \
                  gz = from->z[k] - p->solid.center.z;                                          \
-            zt_face f = zt_##kind##_surface(                                                   \
-                real_dot(rx.x, rx.y, rx.z, gx, gy, gz), real_dot(ry.x, ry.y, ry.z, gx, gy, gz), \
-                real_dot(rz.x, rz.y, rz.z, gx, gy, gz), p->solid.a, p->solid.b);               \
+            zt_face f = zt_##kind##_surface(real_dot(rx.x, rx.y, rx.z, gx, gy, gz),            \
+                                            real_dot(ry.x, ry.y, ry.z, gx, gy, gz),            \
+                                            real_dot(rz.x, rz.y, rz.z, gx, gy, gz),            \
+                                            p->solid.a, p->solid.b);                           \
             real nx = rx.x * f.nx + ry.x * f.ny + rz.x * f.nz;                                 \
             real ny = rx.y * f.nx + ry.y * f.ny + rz.y * f.nz;                                 \
             real nz = rx.z * f.nx + ry.z * f.ny + rz.z * f.nz;                                 \
@@ -123,9 +124,9 @@ DEFINE_SOLID(torus)
 typedef void solid_surfaces(zt_points *restrict w, zt_origins *restrict from,
                             const zt_tracer *tracer, const int32_t *restrict list, int count);
 static solid_surfaces *const solids[ZT_PRIMITIVE_KIND_COUNT] = {
-    [ZT_PRIMITIVE_BALL] = ball_surfaces, [ZT_PRIMITIVE_DISK] = disk_surfaces,
-    [ZT_PRIMITIVE_BOX] = box_surfaces,             [ZT_PRIMITIVE_CYLINDER] = cylinder_surfaces,
-    [ZT_PRIMITIVE_CONE] = cone_surfaces,           [ZT_PRIMITIVE_CAPSULE] = capsule_surfaces,
+    [ZT_PRIMITIVE_BALL] = ball_surfaces,  [ZT_PRIMITIVE_DISK] = disk_surfaces,
+    [ZT_PRIMITIVE_BOX] = box_surfaces,    [ZT_PRIMITIVE_CYLINDER] = cylinder_surfaces,
+    [ZT_PRIMITIVE_CONE] = cone_surfaces,  [ZT_PRIMITIVE_CAPSULE] = capsule_surfaces,
     [ZT_PRIMITIVE_TORUS] = torus_surfaces};
 
 /* ---- meshes ---------------------------------------------------------------------------------
@@ -144,8 +145,8 @@ static vec3 out_of_mesh(const zt_placed_mesh *m, vec3 n) {
 
 static vec3 unit(vec3 v) { return vec3_scale(v, 1 / sqrt(vec3_dot(v, v))); }
 
-/* A point on a triangle of a mesh, in the mesh's space: the corners, twice the area as a vector,
- * and the shares of the corners in it. */
+/* A point on a triangle of a mesh, in the mesh's space: the corners, twice the area as a
+ * vector, and the shares of the corners in it. */
 typedef struct mesh_point {
     const zt_placed_mesh *placed;
     const uint32_t *of;
@@ -184,8 +185,8 @@ static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int
     from->x[k] = (real)((double)from->x[k] + step * gradient.x);
     from->y[k] = (real)((double)from->y[k] + step * gradient.y);
     from->z[k] = (real)((double)from->z[k] + step * gradient.z);
-    real largest = real_max(real_max(real_abs(from->x[k]), real_abs(from->y[k])),
-                            real_abs(from->z[k]));
+    real largest =
+        real_max(real_max(real_abs(from->x[k]), real_abs(from->y[k])), real_abs(from->z[k]));
     from->near[k] = MESH_MARGIN * (largest + p.placed->extent);
     w->nx[k] = (real)normal.x;
     w->ny[k] = (real)normal.y;
@@ -238,7 +239,9 @@ static void smooth_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, i
 /* ---- looks ----------------------------------------------------------------------------------
  */
 
-static inline real whole(real x) { return sizeof(real) == sizeof(double) ? (real)floor((double)x) : (real)floorf((float)x); }
+static inline real whole(real x) {
+    return sizeof(real) == sizeof(double) ? (real)floor((double)x) : (real)floorf((float)x);
+}
 
 /* A place a little below the surface decides which cell a point is in, so that a face along the
  * border of two cells is in one of them. */
@@ -253,7 +256,8 @@ static void weave(zt_points *restrict w, const zt_origins *restrict from,
         real px = from->x[k], py = from->y[k], pz = from->z[k];
         real nx = w->nx[k], ny = w->ny[k], nz = w->nz[k];
         real3 rx = v->rows[0], ry = v->rows[1], rz = v->rows[2];
-        real mx = real_dot(rx.x, rx.y, rx.z, nx, ny, nz), my = real_dot(ry.x, ry.y, ry.z, nx, ny, nz),
+        real mx = real_dot(rx.x, rx.y, rx.z, nx, ny, nz),
+             my = real_dot(ry.x, ry.y, ry.z, nx, ny, nz),
              mz = real_dot(rz.x, rz.y, rz.z, nx, ny, nz);
         real below = BELOW / real_sqrt(real_max(real_dot(mx, my, mz, mx, my, mz), REAL_LEAST));
         real sum = whole(real_dot(rx.x, rx.y, rx.z, px, py, pz) + v->at.x - below * mx) +
@@ -304,8 +308,7 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     find_surfaces(w, from, tracer);
     int mesh_count = 0;
     if (tracer->has_solids)
-        for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT;
-             kind++)
+        for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
             solids[kind](w, from, tracer, list, list_kind(list, w, tracer, kind));
     if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
     for (int j = 0; j < mesh_count; j++) find_mesh(w, rays, tracer, list[j]);

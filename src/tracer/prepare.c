@@ -1,5 +1,6 @@
-/* Prepares a scene: objects become primitives, lights become lamps, patterns find their places. All is computed in double precision and rounded once, at the end.
- * Compiled once for each precision. */
+/* Prepares a scene: objects become primitives, lights become lamps, patterns find their places.
+ * All is computed in double precision and rounded once, at the end. Compiled once for each
+ * precision. */
 #include "tracer/prepare.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@ static void make_pattern(zt_weave *weave, const zt_material *material, const zt_
     xform place = *m->world;
     const zt_object *o = m->object;
     if (o->shape == ZT_SHAPE_MESH) {
-        xform own = xform_place(o->placement.position, o->placement.rotation, o->placement.scale);
+        xform own =
+            xform_place(o->placement.position, o->placement.rotation, o->placement.scale);
         place = xform_mul(m->world, &own);
     } else if (o->shape == ZT_SHAPE_BOX) {
         xform own = xform_place(o->box.center, o->box.rotation, (vec3){1, 1, 1});
@@ -71,13 +73,14 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_scene *s
         const zt_object *object = &scene->objects[i];
         if (object->shape == ZT_SHAPE_GROUP) continue;
         zt_making m = {&all->primitives[all->count], &all->surfaces[all->count],
-                    &all->extents[all->count], object, &worlds[i]};
+                       &all->extents[all->count], object, &worlds[i]};
         *m.primitive = (zt_primitive){.object = i, .stretch = 1};
         *m.surface = (zt_surface){.pattern = -1};
         *m.extent = (zt_extent){.object = i, .least = INFINITY, .stretch = 1};
         if (object->shape == ZT_SHAPE_MESH) {
             zt_placed_mesh *placed = &all->placed[all->placed_count];
-            if (!ZT_REAL_NAME(zt_prepare_mesh)(&m, placed, &scene->meshes[object->mesh])) continue;
+            if (!ZT_REAL_NAME(zt_prepare_mesh)(&m, placed, &scene->meshes[object->mesh]))
+                continue;
             m.primitive->placed = all->placed_count++;
             ZT_TRY(zt_meshes_build(&placed->built, meshes, object->mesh));
         } else if (!ZT_REAL_NAME(zt_prepare_shape)(&m)) {

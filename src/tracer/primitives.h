@@ -132,8 +132,7 @@ static inline bool edge_owned(real ax, real ay, real bx, real by) {
  * edge. */
 static inline real zt_triangle_meet(real3 v0, real3 v1, real3 v2, real ox, real oy, real oz,
                                     real dx, real dy, real dz) {
-    bool x_longest =
-        (real_abs(dx) >= real_abs(dy)) & (real_abs(dx) >= real_abs(dz));
+    bool x_longest = (real_abs(dx) >= real_abs(dy)) & (real_abs(dx) >= real_abs(dz));
     bool y_longest = !x_longest & (real_abs(dy) >= real_abs(dz));
     /* The axes in cyclic order, so that z is the one along which the ray runs most. */
     real ex = x_longest ? dy : y_longest ? dz : dx;

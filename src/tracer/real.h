@@ -11,19 +11,19 @@
 #if defined ZT_REAL_IS_DOUBLE
 typedef double real;
 typedef int64_t real_bits; /* as many bits */
-#define REAL_BITS_MAX INT64_MAX
+#define REAL_BITS_MAX      INT64_MAX
 #define ZT_REAL_NAME(name) name##_double
-#define REAL_ROUNDING 0x1p-53 /* the relative error of one rounding */
-#define REAL_LEAST    DBL_MIN /* the least number of full precision above 0 */
+#define REAL_ROUNDING      0x1p-53 /* the relative error of one rounding */
+#define REAL_LEAST         DBL_MIN /* the least number of full precision above 0 */
 static inline real real_sqrt(real a) { return sqrt(a); }
 static inline real real_abs(real a) { return fabs(a); }
 #else
 typedef float real;
 typedef int32_t real_bits;
-#define REAL_BITS_MAX INT32_MAX
+#define REAL_BITS_MAX      INT32_MAX
 #define ZT_REAL_NAME(name) name##_single
-#define REAL_ROUNDING 0x1p-24f
-#define REAL_LEAST    FLT_MIN
+#define REAL_ROUNDING      0x1p-24f
+#define REAL_LEAST         FLT_MIN
 static inline real real_sqrt(real a) { return sqrtf(a); }
 static inline real real_abs(real a) { return fabsf(a); }
 #endif

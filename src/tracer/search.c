@@ -9,8 +9,8 @@
 #include "tracer/triangles.h"
 
 /* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
- * distances; and how long before the box around a mesh its rays begin, so that they begin before
- * all that is in it. */
+ * distances; and how long before the box around a mesh its rays begin, so that they begin
+ * before all that is in it. */
 #define LOOK_FURTHER (1 + 0x1p-18f)
 #define BEFORE       (1 - (real)0x1p-6)
 
@@ -22,9 +22,9 @@ enum { HULL_LEVEL = 3, LANES_WORTH = 4 };
 typedef struct search {
     zt_batch *rays;
     const zt_placed_mesh *placed;
-    int32_t index;                /* of the primitive that the mesh is */
-    bool any;                     /* one hit is enough */
-    int32_t list[ZT_BATCH];       /* the numbers of the rays, as they stand below */
+    int32_t index;          /* of the primitive that the mesh is */
+    bool any;               /* one hit is enough */
+    int32_t list[ZT_BATCH]; /* the numbers of the rays, as they stand below */
     /* The rays in the mesh's space. */
     alignas(64) real ox[ZT_BATCH];
     alignas(64) real oy[ZT_BATCH];
@@ -32,7 +32,7 @@ typedef struct search {
     alignas(64) real dx[ZT_BATCH];
     alignas(64) real dy[ZT_BATCH];
     alignas(64) real dz[ZT_BATCH];
-    real begin[ZT_BATCH]; /* how far along the batch's they begin */
+    real begin[ZT_BATCH];               /* how far along the batch's they begin */
     alignas(64) real t[ZT_BATCH];       /* the nearest hit so far */
     alignas(64) int32_t part[ZT_BATCH]; /* and of which triangle, or -1 */
     zt_leaning_rays leaning;
@@ -65,8 +65,8 @@ static void enter_mesh(search *restrict s, const zt_batch *restrict rays, int co
     }
 }
 
-/* ZT_BATCH_LANES rays against boxes: origins, one over directions, how far to look, and how much
- * room the boxes need for the roundings of all that. */
+/* ZT_BATCH_LANES rays against boxes: origins, one over directions, how far to look, and how
+ * much room the boxes need for the roundings of all that. */
 typedef struct lanes {
     alignas(64) real ox[ZT_BATCH_LANES];
     alignas(64) real oy[ZT_BATCH_LANES];
@@ -93,8 +93,8 @@ static void enter_lanes(lanes *restrict l, const search *restrict s, int first) 
         l->ky[j] = 1 / s->dy[first + j];
         l->kz[j] = 1 / s->dz[first + j];
         l->t[j] = t[i];
-        real largest =
-            real_max(real_max(real_abs(from->x[i]), real_abs(from->y[i])), real_abs(from->z[i]));
+        real largest = real_max(real_max(real_abs(from->x[i]), real_abs(from->y[i])),
+                                real_abs(from->z[i]));
         l->room[j] = 32 * REAL_ROUNDING * (m->reach * largest + m->room);
     }
 }
@@ -143,8 +143,8 @@ static void meet_halves(lanes *restrict l, const zt_bvh_box *boxes, int index, i
 }
 
 /* Fills the hierarchy's rays with those that meet the hull; the list and the rays in the mesh's
- * space shrink to them. They begin before they enter the box around it, so that single precision
- * keeps what counts. */
+ * space shrink to them. They begin before they enter the box around it, so that single
+ * precision keeps what counts. */
 static void pack(search *restrict s, int count) {
     const zt_bvh_box *boxes = s->placed->built->hull->boxes;
     zt_bvh_rays *restrict packed = &s->packed;
@@ -316,7 +316,7 @@ static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer 
         if (p->kind != ZT_PRIMITIVE_MESH || !zt_bundle_meets(bundle, &p->box, 1)) continue;
         search s;
         s.rays = rays;
-            s.placed = &tracer->placed[p->placed];
+        s.placed = &tracer->placed[p->placed];
         s.index = index;
         s.any = any;
         int count = 0;

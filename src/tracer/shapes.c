@@ -26,8 +26,7 @@ static void set_bounds(zt_making *m, vec3 low, vec3 high) {
     /* Rounded outwards: what is made of rounded numbers may reach as far. */
     double room = 2 * (double)REAL_ROUNDING * m->extent->size;
     vec3 grow = {room, room, room};
-    m->primitive->box =
-        (zt_box){to_real3(vec3_sub(low, grow)), to_real3(vec3_add(high, grow))};
+    m->primitive->box = (zt_box){to_real3(vec3_sub(low, grow)), to_real3(vec3_add(high, grow))};
 }
 
 /* Each of the following makes one primitive and its surface; false where there is nothing to
@@ -105,8 +104,8 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     set_bounds(m, vec3_sub(middle, reach), vec3_add(middle, reach));
     m->primitive->stretch = (real)(longest * longest_back);
     m->extent->stretch = longest * longest_back;
-    m->extent->least = fmin(vec3_length(place->x),
-                            fmin(vec3_length(place->y), vec3_length(place->z)));
+    m->extent->least =
+        fmin(vec3_length(place->x), fmin(vec3_length(place->y), vec3_length(place->z)));
     return true;
 }
 
@@ -182,12 +181,11 @@ static bool prepare_capsule(zt_making *m) {
     const zt_tube *tube = &m->object->tube;
     vec3 way = vec3_sub(tube->to, tube->from);
     double length = vec3_length(way) / tube->radius;
-    vec3 axis = length > 0 ? vec3_scale(vec3_normalize(way), tube->radius)
-                           : (vec3){0, 0, tube->radius};
+    vec3 axis =
+        length > 0 ? vec3_scale(vec3_normalize(way), tube->radius) : (vec3){0, 0, tube->radius};
     xform place = place_along(m->world, tube->from, axis, tube->radius);
     m->primitive->solid.a = (real)length;
-    return isfinite(length) &&
-           make_solid(m, ZT_PRIMITIVE_CAPSULE, &place, 0, 0, 0, length, 1);
+    return isfinite(length) && make_solid(m, ZT_PRIMITIVE_CAPSULE, &place, 0, 0, 0, length, 1);
 }
 
 static bool prepare_torus(zt_making *m) {
@@ -312,7 +310,8 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
                         vec3_max_abs(vec3_sub(mesh->high, mesh->origin)));
     placed->reach = (real)reach;
     placed->room = (real)(reach * vec3_max_abs(place.shift) + inner);
-    double longest = fmax(vec3_max_abs(place.x), fmax(vec3_max_abs(place.y), vec3_max_abs(place.z)));
+    double longest =
+        fmax(vec3_max_abs(place.x), fmax(vec3_max_abs(place.y), vec3_max_abs(place.z)));
     placed->extent = (real)(vec3_max_abs(place.shift) + 3 * longest * inner);
     return finite3(middle) && finite3(around) && finite3(placed->at);
 }

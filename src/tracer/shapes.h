@@ -24,8 +24,8 @@ typedef struct zt_making {
     const xform *world;
 } zt_making;
 
-/* Each makes the primitive, the form of its surface and its extent; false where there is nothing
- * to hit: a radius of zero, a flattening scale, numbers that are not finite. */
+/* Each makes the primitive, the form of its surface and its extent; false where there is
+ * nothing to hit: a radius of zero, a flattening scale, numbers that are not finite. */
 bool ZT_REAL_NAME(zt_prepare_shape)(zt_making *making);
 bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *making, zt_placed_mesh *placed,
                                    const zt_mesh *mesh);

@@ -9,8 +9,8 @@
 #include "tracer/primitives.h"
 #include "tracer/ray.h"
 
-/* How a primitive looks; and, of a plane, sphere or triangle, its surface: of a point p near it,
- * the normal n is the unit vector along normal + bend (p - center), and n . (p - center) -
+/* How a primitive looks; and, of a plane, sphere or triangle, its surface: of a point p near
+ * it, the normal n is the unit vector along normal + bend (p - center), and n . (p - center) -
  * level is the distance that p still has to it. One form for all three, so that one loop
  * without branches serves them. Rows of other kinds have zeros there. */
 typedef struct zt_surface {
@@ -33,7 +33,7 @@ typedef struct zt_weave {
 
 typedef struct zt_lamp {
     real3 position;
-    real3 power; /* color * intensity */
+    real3 power;   /* color * intensity */
     int32_t light; /* its index in the scene */
     bool shadows;
 } zt_lamp;
@@ -71,7 +71,8 @@ struct zt_tracer {
     int32_t lamp_count;
     real3 ambient; /* the sum of the ambient lights */
     int32_t reflection_depth;
-    real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0 */
+    real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0
+               */
     bool has_solids, has_patterns;
 };
 

@@ -47,24 +47,33 @@ static inline bool one_side(double u, double v, double w) {
 
 /* The same of products that are rounded first, which never changes the sign of their difference
  * to the opposite: lets through all that the exact ones let through, and few others. */
-static inline bool about_one_side(const real *x, const real *y) {
-    real u = x[1] * y[2] - y[1] * x[2];
-    real v = x[2] * y[0] - y[2] * x[0];
-    real w = x[0] * y[1] - y[0] * x[1];
+static inline bool about_one_side(real x0, real y0, real x1, real y1, real x2, real y2) {
+    real u = x1 * y2 - y1 * x2, v = x2 * y0 - y2 * x0, w = x0 * y1 - y0 * x1;
     return ((u >= 0) & (v >= 0) & (w >= 0)) | ((u <= 0) & (v <= 0) & (w <= 0));
 }
 
-/* Where a ray meets one leaning triangle, in (0, *t], `*triangle` being that which is at *t
- * already, or -1: sets both and returns true where this one, `index`, counts before it. The
- * products of single precision are exact in double. */
-static inline bool settle(real *t, int32_t *triangle, const real *x, const real *y,
-                          const real *z, real inverse, int32_t index) {
+/* Where ray number i meets triangle number k of a cluster, in (0, *t], `*triangle` being that
+ * which is at *t already, or -1: sets both and returns true where this one counts before it.
+ * The products of single precision are exact in double. */
+static inline bool settle(real *t, int32_t *triangle, const zt_cluster *cluster, int k,
+                          const zt_leaning_rays *rays, int i) {
+    int axis = rays->axis[i], first = axis == 2 ? 0 : axis + 1,
+        second = axis == 0 ? 2 : axis - 1;
+    real x[3], y[3], z[3];
+    for (int corner = 0; corner < 3; corner++) {
+        z[corner] = (real)cluster->corners[corner][axis][k] - rays->o[2][i];
+        x[corner] = ((real)cluster->corners[corner][first][k] - rays->o[0][i]) -
+                    rays->lean[0][i] * z[corner];
+        y[corner] = ((real)cluster->corners[corner][second][k] - rays->o[1][i]) -
+                    rays->lean[1][i] * z[corner];
+    }
     double u = (double)x[1] * (double)y[2] - (double)y[1] * (double)x[2];
     double v = (double)x[2] * (double)y[0] - (double)y[2] * (double)x[0];
     double w = (double)x[0] * (double)y[1] - (double)y[0] * (double)x[1];
     double area = u + v + w;
     double depth = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / area;
-    real at = (real)(depth * (double)inverse);
+    real at = (real)(depth * (double)rays->inverse[i]);
+    int32_t index = cluster->triangles[k];
     if (!(one_side(u, v, w) & (area != 0) & (at > 0))) return false;
     if (!((at < *t) | ((at == *t) & ((*triangle < 0) | (index < *triangle))))) return false;
     *t = at;
@@ -80,79 +89,68 @@ static inline bool zt_meet_cluster(real *t, int32_t *triangle, const zt_cluster 
         second = axis == 0 ? 2 : axis - 1;
     real a = rays->o[0][i], b = rays->o[1][i], c = rays->o[2][i];
     real lean_a = rays->lean[0][i], lean_b = rays->lean[1][i];
-    real x[3][ZT_CLUSTER], y[3][ZT_CLUSTER], z[3][ZT_CLUSTER];
     int32_t inside[ZT_CLUSTER], any = 0;
-    for (int corner = 0; corner < 3; corner++) {
-        const float *px = cluster->corners[corner][first];
-        const float *py = cluster->corners[corner][second];
-        const float *pz = cluster->corners[corner][axis];
-        for (int k = 0; k < ZT_CLUSTER; k++) {
-            z[corner][k] = (real)pz[k] - c;
-            x[corner][k] = ((real)px[k] - a) - lean_a * z[corner][k];
-            y[corner][k] = ((real)py[k] - b) - lean_b * z[corner][k];
-        }
-    }
+    const float *x0 = cluster->corners[0][first], *x1 = cluster->corners[1][first],
+                *x2 = cluster->corners[2][first];
+    const float *y0 = cluster->corners[0][second], *y1 = cluster->corners[1][second],
+                *y2 = cluster->corners[2][second];
+    const float *z0 = cluster->corners[0][axis], *z1 = cluster->corners[1][axis],
+                *z2 = cluster->corners[2][axis];
     for (int k = 0; k < ZT_CLUSTER; k++) {
-        inside[k] = about_one_side((real[3]){x[0][k], x[1][k], x[2][k]},
-                                   (real[3]){y[0][k], y[1][k], y[2][k]});
+        real d0 = (real)z0[k] - c, d1 = (real)z1[k] - c, d2 = (real)z2[k] - c;
+        inside[k] =
+            about_one_side(((real)x0[k] - a) - lean_a * d0, ((real)y0[k] - b) - lean_b * d0,
+                           ((real)x1[k] - a) - lean_a * d1, ((real)y1[k] - b) - lean_b * d1,
+                           ((real)x2[k] - a) - lean_a * d2, ((real)y2[k] - b) - lean_b * d2);
         any |= inside[k];
     }
     if (!any) return false;
     bool found = false;
     for (int k = 0; k < ZT_CLUSTER; k++)
-        if (inside[k])
-            found |= settle(t, triangle, (real[3]){x[0][k], x[1][k], x[2][k]},
-                            (real[3]){y[0][k], y[1][k], y[2][k]},
-                            (real[3]){z[0][k], z[1][k], z[2][k]}, rays->inverse[i],
-                            cluster->triangles[k]);
+        if (inside[k]) found |= settle(t, triangle, cluster, k, rays, i);
     return found;
 }
 
-/* The same for the rays first … first + 15 whose bits are set in `lanes`, which all run along
+/* The same for the rays begin … begin + 15 whose bits are set in `lanes`, which all run along
  * one axis most: one triangle after the other, all rays at a time. t and triangle are of ray
  * number 0. Returns the bits of those for which something is found. */
 static inline uint32_t zt_meet_cluster_lanes(real *t, int32_t *triangle,
                                              const zt_cluster *cluster,
                                              const zt_leaning_rays *rays, int begin,
                                              uint32_t lanes) {
-    enum { LANES = ZT_BVH_LANES };
     int axis = rays->axis[begin + __builtin_ctz(lanes)], first = axis == 2 ? 0 : axis + 1,
         second = axis == 0 ? 2 : axis - 1;
     const real *restrict a = rays->o[0] + begin, *restrict b = rays->o[1] + begin,
                          *restrict c = rays->o[2] + begin;
     const real *restrict lean_a = rays->lean[0] + begin, *restrict lean_b =
                                                              rays->lean[1] + begin;
-    uint32_t found = 0;
+    _Alignas(64) int32_t inside[ZT_BVH_LANES] = {0}; /* bit k: triangle k */
     for (int k = 0; k < ZT_CLUSTER; k++) {
-        _Alignas(64) real x[3][LANES];
-        _Alignas(64) real y[3][LANES];
-        _Alignas(64) real z[3][LANES];
-        _Alignas(64) int32_t inside[LANES];
-        for (int corner = 0; corner < 3; corner++) {
-            const real px = (real)cluster->corners[corner][first][k],
-                       py = (real)cluster->corners[corner][second][k],
-                       pz = (real)cluster->corners[corner][axis][k];
-            WIDE_LOOP for (int l = 0; l < LANES; l++) {
-                z[corner][l] = pz - c[l];
-                x[corner][l] = (px - a[l]) - lean_a[l] * z[corner][l];
-                y[corner][l] = (py - b[l]) - lean_b[l] * z[corner][l];
-            }
+        const real x0 = (real)cluster->corners[0][first][k],
+                   x1 = (real)cluster->corners[1][first][k],
+                   x2 = (real)cluster->corners[2][first][k];
+        const real y0 = (real)cluster->corners[0][second][k],
+                   y1 = (real)cluster->corners[1][second][k],
+                   y2 = (real)cluster->corners[2][second][k];
+        const real z0 = (real)cluster->corners[0][axis][k],
+                   z1 = (real)cluster->corners[1][axis][k],
+                   z2 = (real)cluster->corners[2][axis][k];
+        const int32_t bit = 1 << k;
+        WIDE_LOOP for (int l = 0; l < ZT_BVH_LANES; l++) {
+            real d0 = z0 - c[l], d1 = z1 - c[l], d2 = z2 - c[l];
+            bool in =
+                about_one_side((x0 - a[l]) - lean_a[l] * d0, (y0 - b[l]) - lean_b[l] * d0,
+                               (x1 - a[l]) - lean_a[l] * d1, (y1 - b[l]) - lean_b[l] * d1,
+                               (x2 - a[l]) - lean_a[l] * d2, (y2 - b[l]) - lean_b[l] * d2);
+            inside[l] |= -in & bit;
         }
-        WIDE_LOOP for (int l = 0; l < LANES; l++)
-            inside[l] = about_one_side((real[3]){x[0][l], x[1][l], x[2][l]},
-                                       (real[3]){y[0][l], y[1][l], y[2][l]})
-                        << l;
-        uint32_t set = 0;
-        for (int l = 0; l < LANES; l++) set |= (uint32_t)inside[l];
-        for (set &= lanes; set; set &= set - 1) {
-            int l = __builtin_ctz(set);
-            found |= (uint32_t)settle(t + begin + l, triangle + begin + l,
-                                      (real[3]){x[0][l], x[1][l], x[2][l]},
-                                      (real[3]){y[0][l], y[1][l], y[2][l]},
-                                      (real[3]){z[0][l], z[1][l], z[2][l]},
-                                      rays->inverse[begin + l], cluster->triangles[k])
-                     << l;
-        }
+    }
+    uint32_t found = 0;
+    for (; lanes; lanes &= lanes - 1) {
+        int l = __builtin_ctz(lanes), i = begin + l;
+        for (int32_t left = inside[l]; left; left &= left - 1)
+            if (settle(&t[i], &triangle[i], cluster, __builtin_ctz((unsigned)left), rays, i))
+                found |= 1u << l;
     }
     return found;
 }
