@@ -145,13 +145,12 @@ static vec3 out_of_mesh(const zt_placed_mesh *m, vec3 n) {
 
 static vec3 unit(vec3 v) { return vec3_scale(v, 1 / sqrt(vec3_dot(v, v))); }
 
-/* A point on a triangle of a mesh, in the mesh's space: the corners, twice the area as a
- * vector, and the shares of the corners in it. */
+/* A point on a triangle of a mesh, in the mesh's space: the corners, and twice the area as a
+ * vector. */
 typedef struct mesh_point {
     const zt_placed_mesh *placed;
     const uint32_t *of;
     vec3 at, v[3], area;
-    double shares[3];
 } mesh_point;
 
 static mesh_point mesh_point_of(const zt_points *w, const zt_batch *rays,
@@ -164,24 +163,40 @@ static mesh_point mesh_point_of(const zt_points *w, const zt_batch *rays,
     p.at = zt_placed_point(p.placed,
                            (vec3){(double)from->x[k], (double)from->y[k], (double)from->z[k]});
     for (int i = 0; i < 3; i++) p.v[i] = corner(mesh->positions, p.of, i);
-    vec3 e = vec3_sub(p.v[1], p.v[0]), f = vec3_sub(p.v[2], p.v[0]);
-    p.area = vec3_cross(e, f);
-    vec3 q = vec3_sub(p.at, p.v[0]);
-    double whole = 1 / vec3_dot(p.area, p.area);
-    double s1 = fmin(fmax(vec3_dot(vec3_cross(q, f), p.area) * whole, 0), 1);
-    double s2 = fmin(fmax(vec3_dot(vec3_cross(e, q), p.area) * whole, 0), 1 - s1);
-    p.shares[0] = 1 - s1 - s2;
-    p.shares[1] = s1;
-    p.shares[2] = s2;
+    p.area = vec3_cross(vec3_sub(p.v[1], p.v[0]), vec3_sub(p.v[2], p.v[0]));
     return p;
+}
+
+/* The shares that the corners have in a point. */
+static void share(double *shares, const mesh_point *p) {
+    vec3 e = vec3_sub(p->v[1], p->v[0]), f = vec3_sub(p->v[2], p->v[0]),
+         q = vec3_sub(p->at, p->v[0]);
+    double whole = 1 / vec3_dot(p->area, p->area);
+    shares[1] = fmin(fmax(vec3_dot(vec3_cross(q, f), p->area) * whole, 0), 1);
+    shares[2] = fmin(fmax(vec3_dot(vec3_cross(e, q), p->area) * whole, 0), 1 - shares[1]);
+    shares[0] = 1 - shares[1] - shares[2];
+}
+
+static void color_mesh(zt_points *w, const mesh_point *p, int k) {
+    double shares[3], color[3] = {0, 0, 0};
+    share(shares, p);
+    for (int i = 0; i < 3; i++) {
+        const float *c = p->placed->built->mesh->colors + 3 * (int64_t)p->of[i];
+        for (int channel = 0; channel < 3; channel++)
+            color[channel] += shares[i] * (double)c[channel];
+    }
+    w->color_r[k] *= (real)color[0];
+    w->color_g[k] *= (real)color[1];
+    w->color_b[k] *= (real)color[2];
 }
 
 static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
     mesh_point p = mesh_point_of(w, rays, tracer, k);
     zt_origins *from = rays->from;
     vec3 gradient = out_of_mesh(p.placed, p.area);
-    double step = vec3_dot(p.area, vec3_sub(p.v[0], p.at)) / vec3_dot(gradient, gradient);
-    vec3 normal = unit(gradient);
+    double squared = vec3_dot(gradient, gradient);
+    double step = vec3_dot(p.area, vec3_sub(p.v[0], p.at)) / squared;
+    vec3 normal = vec3_scale(gradient, 1 / sqrt(squared));
     from->x[k] = (real)((double)from->x[k] + step * gradient.x);
     from->y[k] = (real)((double)from->y[k] + step * gradient.y);
     from->z[k] = (real)((double)from->z[k] + step * gradient.z);
@@ -191,16 +206,7 @@ static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int
     w->nx[k] = (real)normal.x;
     w->ny[k] = (real)normal.y;
     w->nz[k] = (real)normal.z;
-    if (!p.placed->vertex_colors) return;
-    double color[3] = {0, 0, 0};
-    for (int i = 0; i < 3; i++) {
-        const float *c = p.placed->built->mesh->colors + 3 * (int64_t)p.of[i];
-        for (int channel = 0; channel < 3; channel++)
-            color[channel] += p.shares[i] * (double)c[channel];
-    }
-    w->color_r[k] *= (real)color[0];
-    w->color_g[k] *= (real)color[1];
-    w->color_b[k] *= (real)color[2];
+    if (p.placed->vertex_colors) color_mesh(w, &p, k);
 }
 
 /* Bends the normal of a smooth mesh's point, and lifts the point onto the surface that the bent
@@ -208,23 +214,23 @@ static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int
  * (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021). Both on the side that
  * the flat normal, which faces the ray, says. */
 static void smooth_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
+    if (!tracer->placed[tracer->primitives[w->primitive[k]].placed].smooth) return;
     mesh_point p = mesh_point_of(w, rays, tracer, k);
-    if (!p.placed->smooth) return;
     zt_origins *from = rays->from;
     vec3 flat = {(double)w->nx[k], (double)w->ny[k], (double)w->nz[k]};
-    vec3 bent = {0, 0, 0}, lift = {0, 0, 0};
+    vec3 own[3], bent = {0, 0, 0}, lift = {0, 0, 0};
+    double shares[3];
+    share(shares, &p);
     for (int i = 0; i < 3; i++) {
-        vec3 own = corner(p.placed->built->mesh->normals, p.of, i);
-        vec3 across = unit(out_of_mesh(p.placed, own));
-        bent = vec3_add(bent, vec3_scale(across, p.shares[i]));
+        own[i] = corner(p.placed->built->mesh->normals, p.of, i);
+        bent = vec3_add(bent, vec3_scale(unit(out_of_mesh(p.placed, own[i])), shares[i]));
     }
     bent = unit(bent);
     double side = vec3_dot(bent, flat) < 0 ? -1 : 1;
     /* In the mesh's space, where the corners are: normals there stand across as well. */
     for (int i = 0; i < 3; i++) {
-        vec3 own = vec3_scale(corner(p.placed->built->mesh->normals, p.of, i), side);
-        double above = fmin(0, vec3_dot(vec3_sub(p.at, p.v[i]), own)) * p.shares[i];
-        lift = vec3_sub(lift, vec3_scale(own, above));
+        double above = vec3_dot(vec3_sub(p.at, p.v[i]), own[i]) * side;
+        lift = vec3_sub(lift, vec3_scale(own[i], side * fmin(above, 0) * shares[i]));
     }
     if (!isfinite(bent.x) || !isfinite(lift.x + lift.y + lift.z)) return;
     vec3 out = xform_vector(&p.placed->place, lift);

@@ -18,13 +18,16 @@
  * quicker to ask them all about one triangle than one about all triangles of a cluster. */
 enum { HULL_LEVEL = 3, LANES_WORTH = 4 };
 
-/* Some rays of a batch on their way through a mesh or a crowd. */
+enum { GROUPS = ZT_BATCH / ZT_BATCH_LANES };
+
+/* Groups of lanes of a batch on their way through a mesh. */
 typedef struct search {
     zt_batch *rays;
     const zt_placed_mesh *placed;
-    int32_t index;          /* of the primitive that the mesh is */
-    bool any;               /* one hit is enough */
-    int32_t list[ZT_BATCH]; /* the numbers of the rays, as they stand below */
+    int32_t index;         /* of the primitive that the mesh is */
+    bool any;              /* one hit is enough */
+    int32_t first[GROUPS]; /* of each group below, where it stands in the batch */
+    bool alike[GROUPS];    /* whether its rays run along one axis most */
     /* The rays in the mesh's space. */
     alignas(64) real ox[ZT_BATCH];
     alignas(64) real oy[ZT_BATCH];
@@ -32,7 +35,7 @@ typedef struct search {
     alignas(64) real dx[ZT_BATCH];
     alignas(64) real dy[ZT_BATCH];
     alignas(64) real dz[ZT_BATCH];
-    real begin[ZT_BATCH];               /* how far along the batch's they begin */
+    alignas(64) real begin[ZT_BATCH];   /* how far along the batch's they begin */
     alignas(64) real t[ZT_BATCH];       /* the nearest hit so far */
     alignas(64) int32_t part[ZT_BATCH]; /* and of which triangle, or -1 */
     zt_leaning_rays leaning;
@@ -42,60 +45,53 @@ typedef struct search {
 /* ---- the way to a mesh, and its hull --------------------------------------------------------
  */
 
-/* Takes listed rays, or all of the batch, to the mesh's space: a multiple of lanes. */
-static void enter_mesh(search *restrict s, const zt_batch *restrict rays, int count) {
-    const zt_placed_mesh *m = s->placed;
-    const zt_origins *restrict from = rays->from;
-    const real rxx = (real)m->rows[0].x, rxy = (real)m->rows[0].y, rxz = (real)m->rows[0].z;
-    const real ryx = (real)m->rows[1].x, ryy = (real)m->rows[1].y, ryz = (real)m->rows[1].z;
-    const real rzx = (real)m->rows[2].x, rzy = (real)m->rows[2].y, rzz = (real)m->rows[2].z;
-    const real ax = (real)m->at.x, ay = (real)m->at.y, az = (real)m->at.z;
-    int padded = zt_batch_padded(count);
-    for (int j = count; j < padded; j++) s->list[j] = s->list[0];
-    WIDE_LOOP for (int j = 0; j < padded; j++) {
-        int32_t i = s->list[j];
-        real ox = from->x[i], oy = from->y[i], oz = from->z[i];
-        real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        s->ox[j] = real_dot(rxx, rxy, rxz, ox, oy, oz) + ax;
-        s->oy[j] = real_dot(ryx, ryy, ryz, ox, oy, oz) + ay;
-        s->oz[j] = real_dot(rzx, rzy, rzz, ox, oy, oz) + az;
-        s->dx[j] = real_dot(rxx, rxy, rxz, dx, dy, dz);
-        s->dy[j] = real_dot(ryx, ryy, ryz, dx, dy, dz);
-        s->dz[j] = real_dot(rzx, rzy, rzz, dx, dy, dz);
-    }
-}
-
-/* ZT_BATCH_LANES rays against boxes: origins, one over directions, how far to look, and how
- * much room the boxes need for the roundings of all that. */
+/* A group of rays in the mesh's space: origins, directions, one over them, how far to look (not
+ * at all where t <= 0), and how much room boxes need for the roundings of all that. */
 typedef struct lanes {
     alignas(64) real ox[ZT_BATCH_LANES];
     alignas(64) real oy[ZT_BATCH_LANES];
     alignas(64) real oz[ZT_BATCH_LANES];
+    alignas(64) real dx[ZT_BATCH_LANES];
+    alignas(64) real dy[ZT_BATCH_LANES];
+    alignas(64) real dz[ZT_BATCH_LANES];
     alignas(64) real kx[ZT_BATCH_LANES];
     alignas(64) real ky[ZT_BATCH_LANES];
     alignas(64) real kz[ZT_BATCH_LANES];
     alignas(64) real t[ZT_BATCH_LANES];
     alignas(64) real room[ZT_BATCH_LANES];
-    alignas(64) real enter[ZT_BATCH_LANES];
+    alignas(64) real enter[ZT_BATCH_LANES]; /* the box that was looked at last */
     alignas(64) int32_t meets[ZT_BATCH_LANES];
 } lanes;
 
-static void enter_lanes(lanes *restrict l, const search *restrict s, int first) {
+static void enter_mesh(lanes *restrict l, const search *restrict s, int first) {
+    const zt_batch *restrict rays = s->rays;
+    const zt_origins *restrict from = rays->from;
     const zt_placed_mesh *m = s->placed;
-    const zt_origins *restrict from = s->rays->from;
-    const real *restrict t = s->rays->t;
+    const real rxx = (real)m->rows[0].x, rxy = (real)m->rows[0].y, rxz = (real)m->rows[0].z;
+    const real ryx = (real)m->rows[1].x, ryy = (real)m->rows[1].y, ryz = (real)m->rows[1].z;
+    const real rzx = (real)m->rows[2].x, rzy = (real)m->rows[2].y, rzz = (real)m->rows[2].z;
+    const real ax = (real)m->at.x, ay = (real)m->at.y, az = (real)m->at.z;
+    const real reach = m->reach, room = m->room;
+    const bool any = s->any;
+    const int count = rays->count;
     WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
-        int32_t i = s->list[first + j];
-        l->ox[j] = s->ox[first + j];
-        l->oy[j] = s->oy[first + j];
-        l->oz[j] = s->oz[first + j];
-        l->kx[j] = 1 / s->dx[first + j];
-        l->ky[j] = 1 / s->dy[first + j];
-        l->kz[j] = 1 / s->dz[first + j];
-        l->t[j] = t[i];
-        real largest = real_max(real_max(real_abs(from->x[i]), real_abs(from->y[i])),
-                                real_abs(from->z[i]));
-        l->room[j] = 32 * REAL_ROUNDING * (m->reach * largest + m->room);
+        int i = first + j;
+        real ox = from->x[i], oy = from->y[i], oz = from->z[i];
+        real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i], t = rays->t[i];
+        real largest = real_max(real_max(real_abs(ox), real_abs(oy)), real_abs(oz));
+        bool looks = (i < count) & (!any | (rays->hit[i] < 0));
+        real until = any ? (t - from->near[i]) / (1 + TIE) : t;
+        l->ox[j] = real_dot(rxx, rxy, rxz, ox, oy, oz) + ax;
+        l->oy[j] = real_dot(ryx, ryy, ryz, ox, oy, oz) + ay;
+        l->oz[j] = real_dot(rzx, rzy, rzz, ox, oy, oz) + az;
+        l->dx[j] = real_dot(rxx, rxy, rxz, dx, dy, dz);
+        l->dy[j] = real_dot(ryx, ryy, ryz, dx, dy, dz);
+        l->dz[j] = real_dot(rzx, rzy, rzz, dx, dy, dz);
+        l->kx[j] = 1 / l->dx[j];
+        l->ky[j] = 1 / l->dy[j];
+        l->kz[j] = 1 / l->dz[j];
+        l->t[j] = looks ? until : 0;
+        l->room[j] = 32 * REAL_ROUNDING * (reach * largest + room);
     }
 }
 
@@ -115,8 +111,7 @@ static inline void meet_box(lanes *restrict l, const zt_bvh_box *box) {
         real leave = real_min(real_min(real_max(x0, x1), real_max(y0, y1)), real_max(z0, z1));
         l->enter[j] = enter;
         l->meets[j] |= !(leave < 0) & !(enter * less > leave * more) &
-                       !(enter * less > l->t[j] * more) &
-                       !(l->t[j] <= 0); /* such a ray looks nowhere */
+                       !(enter * less > l->t[j] * more) & (l->t[j] > 0);
     }
 }
 
@@ -130,62 +125,49 @@ static inline bool any_meets(const lanes *l) {
  * halves, `level` times halved. */
 static void meet_halves(lanes *restrict l, const zt_bvh_box *boxes, int index, int level) {
     memset(l->meets, 0, sizeof l->meets);
-    meet_box(l, &boxes[index]);
-    if (level == 0 || !any_meets(l)) return;
-    enum { STEP = 3 }; /* levels from one look to the next: halves of halves of halves */
-    int step = level < STEP ? level : STEP;
-    int32_t all[ZT_BATCH_LANES] = {0};
-    for (int i = index << step; i < (index + 1) << step; i++) {
-        meet_halves(l, boxes, i, level - step);
-        for (int j = 0; j < ZT_BATCH_LANES; j++) all[j] |= l->meets[j];
-    }
-    memcpy(l->meets, all, sizeof all);
+    for (int i = index << level; i < (index + 1) << level; i++) meet_box(l, &boxes[i]);
 }
 
-/* Fills the hierarchy's rays with those that meet the hull; the list and the rays in the mesh's
- * space shrink to them. They begin before they enter the box around it, so that single
+/* Adds a group of the batch's rays to those that the hierarchy is asked about, if any of the
+ * lanes in `set` meets the hull. They begin before they enter the box around it, so that single
  * precision keeps what counts. */
-static void pack(search *restrict s, int count) {
+static void pack(search *restrict s, int first, uint32_t set) {
     const zt_bvh_box *boxes = s->placed->built->hull->boxes;
     zt_bvh_rays *restrict packed = &s->packed;
-    const zt_origins *from = s->rays->from;
-    int kept = 0;
-    for (int first = 0; first < count; first += ZT_BATCH_LANES) {
-        lanes l;
-        real begin[ZT_BATCH_LANES];
-        enter_lanes(&l, s, first);
-        memset(l.meets, 0, sizeof l.meets);
-        meet_box(&l, &boxes[1]);
-        if (!any_meets(&l)) continue;
-        memcpy(begin, l.enter, sizeof begin);
-        meet_halves(&l, boxes, 1, HULL_LEVEL);
-        for (int j = 0; j < ZT_BATCH_LANES && first + j < count; j++) {
-            int own = first + j;
-            int32_t i = s->list[own];
-            real t0 = begin[j] * BEFORE;
-            t0 = t0 > 0 && t0 < REAL_INFINITY ? t0 : 0;
-            real t = s->rays->t[i];
-            s->list[kept] = i;
-            s->begin[kept] = t0;
-            s->t[kept] = (s->any ? (t - from->near[i]) / (1 + TIE) : t) - t0;
-            s->part[kept] = -1;
-            s->dx[kept] = s->dx[own];
-            s->dy[kept] = s->dy[own];
-            s->dz[kept] = s->dz[own];
-            s->ox[kept] = s->ox[own] + t0 * s->dx[kept];
-            s->oy[kept] = s->oy[own] + t0 * s->dy[kept];
-            s->oz[kept] = s->oz[own] + t0 * s->dz[kept];
-            packed->ox[kept] = (float)s->ox[kept];
-            packed->oy[kept] = (float)s->oy[kept];
-            packed->oz[kept] = (float)s->oz[kept];
-            packed->dx[kept] = (float)s->dx[kept];
-            packed->dy[kept] = (float)s->dy[kept];
-            packed->dz[kept] = (float)s->dz[kept];
-            packed->far[kept] = (float)s->t[kept] * LOOK_FURTHER;
-            kept += l.meets[j];
-        }
+    lanes l;
+    real begin[ZT_BATCH_LANES];
+    enter_mesh(&l, s, first);
+    meet_halves(&l, boxes, 1, 0);
+    if (!any_meets(&l)) return;
+    memcpy(begin, l.enter, sizeof begin);
+    meet_halves(&l, boxes, 1, HULL_LEVEL);
+    if (!any_meets(&l)) return;
+    const int at = packed->count;
+    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+        real t0 = begin[j] * BEFORE;
+        t0 = ((t0 > 0) & (t0 < REAL_INFINITY)) ? t0 : 0;
+        real ox = l.ox[j] + t0 * l.dx[j], oy = l.oy[j] + t0 * l.dy[j],
+             oz = l.oz[j] + t0 * l.dz[j], t = l.t[j] - t0;
+        bool looks = l.meets[j] & (int32_t)(set >> j & 1);
+        s->begin[at + j] = t0;
+        s->t[at + j] = t;
+        s->part[at + j] = -1;
+        s->ox[at + j] = ox;
+        s->oy[at + j] = oy;
+        s->oz[at + j] = oz;
+        s->dx[at + j] = l.dx[j];
+        s->dy[at + j] = l.dy[j];
+        s->dz[at + j] = l.dz[j];
+        packed->ox[at + j] = (float)ox;
+        packed->oy[at + j] = (float)oy;
+        packed->oz[at + j] = (float)oz;
+        packed->dx[at + j] = (float)l.dx[j];
+        packed->dy[at + j] = (float)l.dy[j];
+        packed->dz[at + j] = (float)l.dz[j];
+        packed->far[at + j] = looks ? (float)t * LOOK_FURTHER : -1;
     }
-    packed->count = kept;
+    s->first[at / ZT_BATCH_LANES] = first;
+    packed->count += ZT_BATCH_LANES;
 }
 
 /* ---- triangles ------------------------------------------------------------------------------
@@ -195,7 +177,7 @@ static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     search *s = user;
     const zt_cluster *cluster = &s->placed->built->clusters.clusters[box];
     uint32_t found = 0;
-    if (__builtin_popcount(set) >= LANES_WORTH && zt_lean_alike(&s->leaning, first, set))
+    if (s->alike[first / ZT_BATCH_LANES] && __builtin_popcount(set) >= LANES_WORTH)
         found = zt_meet_cluster_lanes(s->t, s->part, cluster, &s->leaning, first, set);
     else
         for (; set; set &= set - 1) {
@@ -209,23 +191,41 @@ static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     }
 }
 
-/* The listed rays, `count` of them, against one mesh. */
-static void search_mesh(search *s, int count, zt_bvh_kind kind) {
-    zt_batch *rays = s->rays;
-    enter_mesh(s, rays, count);
-    pack(s, count);
-    if (s->packed.count == 0) return;
-    zt_lean_rays(&s->leaning, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->packed.count);
-    zt_bvh_look(s->placed->built->bvh, &s->packed, kind, visit_cluster, s);
-    for (int j = 0; j < s->packed.count; j++) {
-        int32_t i = s->list[j], hit = rays->hit[i];
-        if (s->part[j] < 0) continue;
-        real t = s->begin[j] + s->t[j];
-        if (t == rays->t[i] && hit >= 0 && hit < s->index) continue;
-        rays->t[i] = t;
-        rays->hit[i] = s->index;
-        rays->part[i] = s->part[j];
+/* What was found becomes the batch's. */
+static void take(const search *restrict s) {
+    zt_batch *restrict rays = s->rays;
+    const int32_t index = s->index;
+    for (int at = 0; at < s->packed.count; at += ZT_BATCH_LANES) {
+        const int first = s->first[at / ZT_BATCH_LANES];
+        WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+            real t = s->begin[at + j] + s->t[at + j], nearest = rays->t[first + j];
+            int32_t hit = rays->hit[first + j], part = s->part[at + j];
+            bool nearer = (part >= 0) & !((t == nearest) & (hit >= 0) & (hit < index));
+            rays->t[first + j] = nearer ? t : nearest;
+            rays->hit[first + j] = nearer ? index : hit;
+            rays->part[first + j] = nearer ? part : rays->part[first + j];
+        }
     }
+}
+
+/* The groups that were packed, against the mesh. */
+static void search_mesh(search *s, zt_bvh_kind kind) {
+    const int count = s->packed.count;
+    if (count == 0) return;
+    zt_lean_rays(&s->leaning, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, count);
+    for (int at = 0; at < count; at += ZT_BATCH_LANES)
+        s->alike[at / ZT_BATCH_LANES] = zt_lean_alike(&s->leaning, at);
+    zt_bvh_look(s->placed->built->bvh, &s->packed, kind, visit_cluster, s);
+    take(s);
+}
+
+static void begin_search(search *s, zt_batch *rays, const zt_tracer *tracer, int32_t index,
+                         bool any) {
+    s->rays = rays;
+    s->placed = &tracer->placed[tracer->primitives[index].placed];
+    s->index = index;
+    s->any = any;
+    s->packed.count = 0;
 }
 
 /* ---- crowds ---------------------------------------------------------------------------------
@@ -249,14 +249,9 @@ static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     const zt_primitive *p = &c->tracer->primitives[index];
     if (p->kind == ZT_PRIMITIVE_MESH) {
         search s;
-        int count = 0;
-        s.rays = rays;
-        s.placed = &c->tracer->placed[p->placed];
-        s.index = index;
-        s.any = c->any;
-        for (uint32_t left = set; left; left &= left - 1)
-            s.list[count++] = first + __builtin_ctz(left);
-        search_mesh(&s, count, c->kind);
+        begin_search(&s, rays, c->tracer, index, c->any);
+        pack(&s, first, set);
+        search_mesh(&s, c->kind);
     } else {
         ZT_KERNEL_NAME(zt_meet_lanes)(rays, c->tracer, index, first, c->any);
     }
@@ -315,16 +310,9 @@ static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer 
         const zt_primitive *p = &tracer->primitives[index];
         if (p->kind != ZT_PRIMITIVE_MESH || !zt_bundle_meets(bundle, &p->box, 1)) continue;
         search s;
-        s.rays = rays;
-        s.placed = &tracer->placed[p->placed];
-        s.index = index;
-        s.any = any;
-        int count = 0;
-        for (int i = 0; i < rays->count; i++) {
-            s.list[count] = i;
-            count += !any || (rays->hit[i] < 0 && rays->t[i] > 0);
-        }
-        if (count > 0) search_mesh(&s, count, kind);
+        begin_search(&s, rays, tracer, index, any);
+        for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) pack(&s, first, ~0u);
+        search_mesh(&s, kind);
     }
 }
 

@@ -155,11 +155,10 @@ static inline uint32_t zt_meet_cluster_lanes(real *t, int32_t *triangle,
     return found;
 }
 
-/* Whether the rays first … first + 15 whose bits are set run along one axis most. */
-static inline bool zt_lean_alike(const zt_leaning_rays *rays, int begin, uint32_t lanes) {
-    int32_t axis = rays->axis[begin + __builtin_ctz(lanes)], others = 0;
-    for (uint32_t set = lanes; set; set &= set - 1)
-        others |= rays->axis[begin + __builtin_ctz(set)] ^ axis;
+/* Whether the rays begin … begin + 15 run along one axis most. */
+static inline bool zt_lean_alike(const zt_leaning_rays *rays, int begin) {
+    int32_t axis = rays->axis[begin], others = 0;
+    for (int l = 1; l < ZT_BVH_LANES; l++) others |= rays->axis[begin + l] ^ axis;
     return !others;
 }
 
