@@ -99,7 +99,7 @@ static real normal_error(const judge *j, const ref_primitive *p, const probe *a,
  * tracer found, or that of the one that it ought to have found. */
 static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *ray, real scale,
                          ref_hit expected, const probe *a) {
-    real error = normal_error(j, p, a, scale, real3_of(a->point));
+    real error = normal_error(j, p, a, scale, real3_along(ray->o, a->t, ray->d));
     if (error > j->tolerance && expected.object == a->object)
         error = real_min(error,
                          normal_error(j, p, a, scale, real3_along(ray->o, expected.t, ray->d)));
@@ -176,10 +176,13 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
     const ref_primitive *p = &j->ref->primitives[a->object];
     real3 at = real3_along(ray->o, a->t, ray->d), point = real3_of(a->point);
     real scale = ref_scale(p, ray, a->t);
-    real error = real_max(ref_nearest_face(p, a->part, at).distance,
-                          ref_nearest_face(p, a->part, point).distance);
-    error = real_max(error, real3_length(real3_sub(point, at)) / 2) / scale;
+    real error = ref_nearest_face(p, a->part, at).distance / scale;
+    real off = ref_nearest_face(p, a->part, point).distance;
+    /* Along the ray as well, as far as that is not how the surface moves. */
+    off = real_max(off, real3_length(real3_sub(point, at)) / 2) / scale;
+    bool smooth = j->ref->scene->objects[a->object].smooth;
     worst(&t->hit, error);
+    if (!smooth) worst(p->shape == ZT_SHAPE_MESH ? &t->lift : &t->point, off);
     if (!(a->t > 0)) {
         judge_count(j, &t->false_hits, "behind the ray", ray, expected, a);
         return;
@@ -194,7 +197,8 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
 }
 
 bool tally_holds(const tally *t, double tolerance) {
-    return t->hit <= tolerance && t->normal <= tolerance && t->mirror <= tolerance &&
+    return t->hit <= tolerance && t->point <= tolerance && t->lift <= 8 * tolerance &&
+           t->normal <= tolerance && t->mirror <= tolerance &&
            t->wrong + t->missed + t->false_hits + t->leaks + t->acne + t->not_finite == 0;
 }
 
@@ -202,6 +206,8 @@ void tally_add(tally *sum, const tally *t) {
     sum->rays += t->rays;
     sum->hits += t->hits;
     worst(&sum->hit, t->hit);
+    worst(&sum->point, t->point);
+    worst(&sum->lift, t->lift);
     worst(&sum->normal, t->normal);
     worst(&sum->mirror, t->mirror);
     worst(&sum->forward, t->forward);

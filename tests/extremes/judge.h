@@ -9,7 +9,9 @@
  * that makes the answer exact. */
 typedef struct tally {
     int64_t rays, hits;
-    double hit;         /* worst of distances and points */
+    double hit;         /* worst of distances */
+    double point;       /* of points, where further rays begin */
+    double lift;        /* of the same on meshes, which are left by a few roundings */
     double normal;      /* of normals */
     double mirror;      /* of mirrored directions, given the normal */
     double forward;     /* worst relative error of the distance over its condition number */

@@ -57,7 +57,7 @@ static real3 smooth_normal(const judge *j, const probe *a, const ref_ray *ray) {
     const ref_triangle *t = &j->ref->primitives[a->object].triangles[a->part];
     affine place = affine_place(object->placement.position, object->placement.rotation,
                                 real3_of(object->placement.scale));
-    real3 sum = {0, 0, 0}, p = real3_of(a->point);
+    real3 sum = {0, 0, 0}, p = real3_along(ray->o, a->t, ray->d);
     for (int i = 0; i < 3; i++) {
         real3 b = t->v[(i + 1) % 3], c = t->v[(i + 2) % 3];
         real share = real3_dot(real3_cross(real3_sub(b, p), real3_sub(c, p)), t->normal);
@@ -74,7 +74,10 @@ static real3 smooth_normal(const judge *j, const probe *a, const ref_ray *ray) {
 void judge_smooth(const judge *j, const ref_ray *ray, const probe *a) {
     real3 normal = smooth_normal(j, a, ray);
     if (real3_dot(normal, real3_unit(ray->d)) > -(real)0.02) return;
-    real off = real3_length(real3_sub(normal, real3_of(a->normal))) / 10;
+    /* The corners' normals are given in single precision. */
+    const ref_primitive *p = &j->ref->primitives[a->object];
+    real off = real3_length(real3_sub(normal, real3_of(a->normal))) - (real)2e-7;
+    off /= 1 + ref_scale(p, ray, a->t) / p->triangles[a->part].smallest;
     if (!((double)off <= j->tally->normal)) j->tally->normal = (double)off;
     for (int32_t i = 0; i < j->ref->scene->light_count; i++) {
         if (j->ref->scene->lights[i].kind != ZT_LIGHT_POINT) continue;

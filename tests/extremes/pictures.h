@@ -6,7 +6,8 @@
 #include "run.h"
 
 /* In its tallies rays are pixels; `wrong` are those that show another light than the reference
- * sees anywhere near; `false_hits` those that differ with the number of threads. */
+ * sees anywhere near (in double precision: what single cannot tell apart may look different);
+ * `false_hits` those that differ with the number of threads. */
 extern const extreme_case pictures_case;
 
 /* One picture of each of `count` scenes of each case. False where the tracer fails. */

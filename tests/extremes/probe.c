@@ -1,6 +1,7 @@
 #include "probe.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "render/render.h"
 #include "tracer/kernel.h"
@@ -35,7 +36,7 @@ probe_tracer *probe_open(const zt_scene *scene, probe_precision precision,
     if (!t) return NULL;
     t->work = zt_arena_push(&t->arena, zt_kernel_work_size());
     if (!t->work ||
-        zt_meshes_open(&t->meshes, scene->meshes, scene->mesh_count, (zt_listener){0}) ||
+        zt_meshes_open(&t->meshes, scene->meshes, scene->mesh_count, 1, (zt_listener){0}) ||
         zt_tracer_prepare(&t->ready, scene, precision_of(precision), pixel, t->meshes,
                           &t->arena)) {
         probe_close(&t);
@@ -68,4 +69,37 @@ void probe_run(probe_tracer *t, probe *probes, int count) {
             p->next_source = b->mirror_source;
         }
     }
+}
+
+/* Renders into an image that is there. */
+static int64_t render(zt_image *image, const zt_scene *scene, const probe_tracer *t,
+                      zt_pool *pool, int threads) {
+    zt_arena arena = {0};
+    zt_render_work *work;
+    int64_t left_out = -1;
+    zt_render_job job = {.scene = &t->ready,
+                         .lens = zt_lens_prepare(&scene->camera, image->width, image->height),
+                         .samples = 1};
+    bool ok = zt_render_work_push(&work, &arena, threads) == ZT_OK &&
+              zt_render(image, &left_out, &job, work, pool) == ZT_OK;
+    zt_arena_free(&arena);
+    return ok ? left_out : -1;
+}
+
+int64_t probe_render(float *pixels, const zt_scene *scene, probe_precision precision, int width,
+                     int height, int threads) {
+    probe_precision chosen;
+    probe_tracer *t = probe_open(scene, precision, &chosen);
+    zt_image *image = NULL;
+    zt_pool *pool = NULL;
+    int64_t left_out = -1;
+    if (t && zt_image_create(&image, width, height) == ZT_OK &&
+        zt_pool_open(&pool, threads) == ZT_OK) {
+        left_out = render(image, scene, t, pool, threads);
+        memcpy(pixels, image->pixels, sizeof *pixels * 4 * (size_t)(width * height));
+    }
+    zt_pool_close(&pool);
+    zt_image_free(&image);
+    probe_close(&t);
+    return left_out;
 }

@@ -70,8 +70,9 @@ static span convex(const ref_primitive *p, real3 o, real3 d) {
 }
 
 /* x^2 + y^2 + z^2 + 1 - a^2 is squared and held against 4 (x^2 + y^2), from the place on the
- * ray nearest to the middle. Whether the source is left out is settled here: the root nearest
- * to the ray's beginning is its own. */
+ * ray nearest to the middle. Whether the source is left out is settled here: its own root is
+ * the nearest to the ray's beginning of those where the ray goes to the side that it leaves to.
+ */
 static bool torus_first(real *t, const ref_primitive *p, real3 o, real3 d, bool leaves,
                         real from, real to) {
     real length = real3_length(d), shift = -real3_dot(o, d) / (length * length);
@@ -82,10 +83,15 @@ static bool torus_first(real *t, const ref_primitive *p, real3 o, real3 d, bool 
     real roots[4];
     int count = ref_quartic(roots, 2 * k - 4 * flat, -8 * cross,
                             k * k - 4 * (m.x * m.x + m.y * m.y), limit);
+    real from_ring = 1 - 1 / REAL(sqrt)(o.x * o.x + o.y * o.y);
+    bool outward = from_ring * (o.x * d.x + o.y * d.y) + o.z * d.z > 0;
     int own = -1;
     for (int i = 0; i < count; i++) {
         roots[i] = shift + roots[i] / length;
-        if (leaves && (own < 0 || real_abs(roots[i]) < real_abs(roots[own]))) own = i;
+        bool goes_out = i % 2; /* in, out, in, out */
+        if (leaves && goes_out == outward &&
+            (own < 0 || real_abs(roots[i]) < real_abs(roots[own])))
+            own = i;
     }
     for (int i = 0; i < count; i++)
         if (i != own && roots[i] > from && roots[i] < to) {

@@ -5,12 +5,14 @@
 static const char *const precisions[] = {"single", "double", "auto"};
 
 void table_begin(FILE *csv) {
-    printf(
-        "%-19s %-6s %8s %6s | %8s %8s %8s | %8s %8s %8s | %5s %5s %5s %5s %5s %5s %6s | %7s\n",
-        "case", "", "rays", "hits", "hit", "normal", "mirror", "forward", "relative", "cond.",
-        "wrong", "miss", "false", "leaks", "acne", "notfin", "ties", "ns/ray");
+    printf("%-19s %-6s %8s %6s | %8s %8s %8s %8s %8s | %8s %8s %8s | %5s %5s %5s %5s %5s %5s "
+           "%6s | %7s\n",
+           "case", "", "rays", "hits", "hit", "point", "lift", "normal", "mirror", "forward",
+           "relative", "cond.", "wrong", "miss", "false", "leaks", "acne", "notfin", "ties",
+           "ns/ray");
     if (csv)
-        fprintf(csv, "case,precision,scenes,scenes_in_single,rays,hits,backward_hit,"
+        fprintf(csv, "case,precision,scenes,scenes_in_single,rays,hits,backward_hit,backward_"
+                     "point,mesh_lift,"
                      "backward_normal,backward_mirror,forward_over_condition,relative_distance,"
                      "condition,wrong,missed,false,leaks,acne,not_finite,ties,ns_per_ray,"
                      "holds\n");
@@ -20,13 +22,15 @@ static void csv_line(FILE *csv, const extreme_case *c, const run_result *r, int 
     const tally *t = &r->tallies[i];
     int64_t single = i == PROBE_SINGLE ? r->scenes : i == PROBE_AUTO ? r->chose_single : 0;
     fprintf(csv,
-            "%s,%s,%lld,%lld,%lld,%lld,%.3g,%.3g,%.3g,%.3g,%.3g,%.3g,%lld,%lld,%lld,%lld,%lld,"
+            "%s,%s,%lld,%lld,%lld,%lld,%.3g,%.3g,%.3g,%.3g,%.3g,%.3g,%.3g,%.3g,%lld,%lld,%lld,%"
+            "lld,%lld,"
             "%lld,%lld,%.1f,%d\n",
             c->name, precisions[i], (long long)r->scenes, (long long)single, (long long)t->rays,
-            (long long)t->hits, t->hit, t->normal, t->mirror, t->forward, t->relative,
-            t->condition, (long long)t->wrong, (long long)t->missed, (long long)t->false_hits,
-            (long long)t->leaks, (long long)t->acne, (long long)t->not_finite,
-            (long long)t->ties, 1e9 * t->seconds / (double)t->rays, holds);
+            (long long)t->hits, t->hit, t->point, t->lift, t->normal, t->mirror, t->forward,
+            t->relative, t->condition, (long long)t->wrong, (long long)t->missed,
+            (long long)t->false_hits, (long long)t->leaks, (long long)t->acne,
+            (long long)t->not_finite, (long long)t->ties, 1e9 * t->seconds / (double)t->rays,
+            holds);
 }
 
 int table_case(FILE *csv, const extreme_case *c, const run_result *r) {
@@ -45,13 +49,14 @@ int table_case(FILE *csv, const extreme_case *c, const run_result *r) {
         const limit *known = limit_find(c->name, (probe_precision)i);
         if (!holds) mark = known ? "  (limit)" : *mark ? mark : "  FAILS";
         failures += !holds && !known;
-        printf("%-19s %-6s %8lld %6lld | %8.1e %8.1e %8.1e | %8.1e %8.1e %8.1e | %5lld %5lld "
+        printf("%-19s %-6s %8lld %6lld | %8.1e %8.1e %8.1e %8.1e %8.1e | %8.1e %8.1e %8.1e | "
+               "%5lld %5lld "
                "%5lld %5lld %5lld %6lld %6lld | %7.0f%s\n",
                i ? "" : c->name, precisions[i], (long long)t->rays, (long long)t->hits, t->hit,
-               t->normal, t->mirror, t->forward, t->relative, t->condition, (long long)t->wrong,
-               (long long)t->missed, (long long)t->false_hits, (long long)t->leaks,
-               (long long)t->acne, (long long)t->not_finite, (long long)t->ties,
-               1e9 * t->seconds / (double)t->rays, mark);
+               t->point, t->lift, t->normal, t->mirror, t->forward, t->relative, t->condition,
+               (long long)t->wrong, (long long)t->missed, (long long)t->false_hits,
+               (long long)t->leaks, (long long)t->acne, (long long)t->not_finite,
+               (long long)t->ties, 1e9 * t->seconds / (double)t->rays, mark);
         if (csv) csv_line(csv, c, r, i, holds);
     }
     return failures;
