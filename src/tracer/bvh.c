@@ -39,9 +39,9 @@ static zt_status start(zt_bvh_builder *builder) {
 }
 
 zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
-                          int32_t box_count, zt_bvh_life life) {
+                          int32_t box_count) {
     ZT_TRY(start(builder));
-    return builder->door->of_boxes(bvh, builder->embree, boxes, box_count, life);
+    return builder->door->of_boxes(bvh, builder->embree, boxes, box_count);
 }
 
 void zt_bvh_free(zt_bvh **bvh) {

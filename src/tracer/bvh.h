@@ -38,16 +38,13 @@ zt_status zt_bvh_open(zt_bvh_builder **builder, int threads, zt_listener listene
 void zt_bvh_close(zt_bvh_builder **builder);       /* after all of its hierarchies */
 int zt_bvh_threads(const zt_bvh_builder *builder); /* at least 1 */
 
-/* How long a hierarchy is for: many frames, so that it is built well, or one, quickly. */
-typedef enum zt_bvh_life { ZT_BVH_LASTING, ZT_BVH_PASSING } zt_bvh_life;
-
-/* Over boxes, which need not outlive the call. *bvh is NULL or a hierarchy of the same builder
- * and life, which is then made over anew: what moves is built each frame and should allocate
- * little. Boxes with low > high, or with a number that is not finite, are left out. Where this
- * fails, the hierarchy is freed and *bvh NULL. */
+/* Over boxes, which need not outlive the call. *bvh is NULL or a hierarchy of the same builder,
+ * which is then made over anew: what moves is built each frame and should allocate little.
+ * Boxes with low > high, or with a number that is not finite, are left out. Where this fails,
+ * the hierarchy is freed and *bvh NULL. */
 typedef struct zt_bvh zt_bvh;
 zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
-                          int32_t box_count, zt_bvh_life life);
+                          int32_t box_count);
 void zt_bvh_free(zt_bvh **bvh);
 
 /* How the rays run: close together from about one place, or anyhow. Only speed depends on it.
@@ -61,10 +58,11 @@ typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
  * them though no ray meets them.
  *
  * No box is passed by that a ray, its numbers taken as exact, touches before `far`, for origins
- * within 2^28 times half the size of what all boxes make up. Boxes smaller than 2^-18 of that
- * are looked at as if they were that large, so that giants and dwarfs should not share a
- * hierarchy. Roundings of the numbers themselves are the caller's to allow for, by larger
- * boxes, or by moving origins near in double precision first. */
+ * within 2^26 times the size of what all boxes make up (or 2^2 times their largest coordinate).
+ * Boxes smaller than 2^-19 of that size are looked at as if they were that large, so that
+ * giants and dwarfs should not share a hierarchy. Roundings of the numbers themselves are the
+ * caller's to allow for, by larger boxes, or by moving origins near in double precision first.
+ */
 typedef void zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
 void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);

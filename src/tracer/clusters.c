@@ -232,7 +232,7 @@ zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint
     if (threads > 1 && triangle_count >= MANY) zt_pool_open(&pool, threads);
     if (w.items && w.starts) {
         bound_triangles(w.items, positions, triangles, triangle_count);
-        split(&w, (range){w.items, triangle_count, 0}, triangle_count / (LATER_MAX / 4));
+        split(&w, (range){w.items, triangle_count, 0}, triangle_count / 16);
         run(pool, w.later_count, split_range, &w);
         for (int32_t i = 0; i < triangle_count; i += w.items[i].leaf)
             w.starts[out->count++] = i;

@@ -5,11 +5,14 @@
  * these are allowed for here. It sees all of it scaled by powers of two, which changes no
  * digit, and moved: space so that the boxes reach from about -1 to 1 (Embree passes by what is
  * beyond 1e18), directions so that their largest component is between 1 and 2. Origins further
- * away are moved along their rays to about where these come near, so that all are within 4, or
+ * away are moved along their rays to about where these come near, so that all are within 8, or
  * else the ray is of no concern. A distance t to a face at b from the origin o, worked out as b
  * / d - o / d with a reciprocal that is off by 2^-22, is then off by what moving the face by
  * (|b| + |o|) 2^-21.4 is at most, that is, less than GROWN. Components below 1e-18 are taken
- * for that, which over the little way that is left is less still. */
+ * for that, which over the little way that is left is less still.
+ *
+ * One quality serves for what is built once and for what is built each frame: a low one builds
+ * in two thirds of the time and is looked through at half the speed, a high one is the same. */
 #include "tracer/embree.h"
 
 #include <embree3/rtcore.h>
@@ -24,8 +27,11 @@
 
 enum { LANES = ZT_BVH_LANES };
 
-#define GROWN   0x1p-18f /* by how much boxes are grown */
-#define BEFORE  2 /* how far from the center, at least, rays look from: all boxes are within */
+#define GROWN 0x1p-18f /* by how much boxes are grown */
+#define BEFORE                                                                                 \
+    2 /* from the point nearest to the center: all boxes are within sqrt(3) of that */
+#define REACH                                                                                  \
+    8 /* of origins then, for rays that can touch any: sqrt(3 + 3 (2 * 2)^2) is less */
 #define FURTHER (1 + 0x1p-20)
 
 struct zt_embree {
@@ -130,7 +136,7 @@ ZT_CLONES static void visit_box(const struct RTCIntersectFunctionNArguments *arg
                           : -INFINITY;
 }
 
-static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_life life) {
+static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree) {
     hierarchy *h = calloc(1, sizeof *h);
     *out = (zt_bvh *)h;
     if (!h) return ZT_EMEMORY;
@@ -141,10 +147,6 @@ static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree, zt_bvh_lif
         embree_free(out);
         return ZT_EMEMORY;
     }
-    bool lasting = life == ZT_BVH_LASTING;
-    if (!lasting) rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_DYNAMIC);
-    rtcSetSceneBuildQuality(h->scene,
-                            lasting ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserData(h->geometry, h);
     rtcSetGeometryBoundsFunction(h->geometry, bounds_of_box, NULL);
     rtcSetGeometryIntersectFunction(h->geometry, visit_box);
@@ -163,7 +165,9 @@ static void fit_space(hierarchy *h, const zt_bvh_box *boxes, int32_t count) {
             if (boxes[k].high[i] > high) high = boxes[k].high[i];
         }
         h->center[i] = low <= high ? ((double)low + (double)high) / 2 : 0;
-        if (half < (double)high - h->center[i]) half = (double)high - h->center[i];
+        /* Single precision has no finer places there than that. */
+        half = fmax(half, fabs(h->center[i]) * 0x1p-24);
+        if (low <= high) half = fmax(half, (double)high - h->center[i]);
     }
     int exponent;
     frexp(half, &exponent);
@@ -171,8 +175,8 @@ static void fit_space(hierarchy *h, const zt_bvh_box *boxes, int32_t count) {
 }
 
 static zt_status embree_of_boxes(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
-                                 int32_t box_count, zt_bvh_life life) {
-    if (!*bvh) ZT_TRY(new_hierarchy(bvh, embree, life));
+                                 int32_t box_count) {
+    if (!*bvh) ZT_TRY(new_hierarchy(bvh, embree));
     hierarchy *h = (hierarchy *)*bvh;
     h->boxes = boxes;
     fit_space(h, boxes, box_count);
@@ -215,19 +219,21 @@ ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restric
         double oz = ((double)rays->oz[i] - cz) * scale, wz = (double)(dz * shrink);
         double nearest = -(ox * wx + oy * wy + oz * wz) / (wx * wx + wy * wy + wz * wz);
         double moved = nearest > BEFORE ? nearest - BEFORE : 0;
-        packet->org_x[lane] = (float)(ox + moved * wx);
-        packet->org_y[lane] = (float)(oy + moved * wy);
-        packet->org_z[lane] = (float)(oz + moved * wz);
+        float x = (float)(ox + moved * wx), left = (float)(far * stretch - moved);
+        float y = (float)(oy + moved * wy), z = (float)(oz + moved * wz);
+        packet->org_x[lane] = x;
+        packet->org_y[lane] = y;
+        packet->org_z[lane] = z;
         packet->dir_x[lane] = dx * shrink;
         packet->dir_y[lane] = dy * shrink;
         packet->dir_z[lane] = dz * shrink;
-        float left = (float)(far * stretch - moved);
         packet->tfar[lane] = left;
         l->stretch[lane] = stretch;
         l->moved[lane] = moved;
-        double zero = (ox + oy + oz + wx + wy + wz) * 0; /* NaN where one is not finite */
-        int looks = -((lane < count) & (far > 0) & (left > 0) & (zero == 0) & (length > 0) &
-                      (shrink > 0));
+        /* Also false where a number is not finite. */
+        bool near = (fabsf(x) <= REACH) & (fabsf(y) <= REACH) & (fabsf(z) <= REACH);
+        int looks =
+            -((lane < count) & near & (far > 0) & (left > 0) & (length > 0) & (shrink > 0));
         valid[lane] = looks;
         any |= looks;
     }

@@ -14,7 +14,7 @@ typedef struct zt_embree_door {
     void (*close)(zt_embree **embree);
     /* All below is as bvh.h has it. */
     zt_status (*of_boxes)(zt_bvh **bvh, zt_embree *embree, const zt_bvh_box *boxes,
-                          int32_t box_count, zt_bvh_life life);
+                          int32_t box_count);
     void (*free)(zt_bvh **bvh);
     void (*look)(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);

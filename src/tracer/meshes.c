@@ -68,8 +68,7 @@ static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
             b->clusters.boxes[i].low[axis] -= size * 0x1p-19f;
             b->clusters.boxes[i].high[axis] += size * 0x1p-19f;
         }
-    return zt_bvh_of_boxes(&b->bvh, builder, b->clusters.boxes, b->clusters.count,
-                           ZT_BVH_LASTING);
+    return zt_bvh_of_boxes(&b->bvh, builder, b->clusters.boxes, b->clusters.count);
 }
 
 zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t index) {
@@ -81,7 +80,7 @@ zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t ind
 
 zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, const zt_bvh_box *boxes,
                           int32_t count) {
-    ZT_TRY(zt_bvh_of_boxes(&m->crowd, m->builder, boxes, count, ZT_BVH_PASSING));
+    ZT_TRY(zt_bvh_of_boxes(&m->crowd, m->builder, boxes, count));
     *crowd = m->crowd;
     return ZT_OK;
 }
