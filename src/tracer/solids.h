@@ -46,8 +46,7 @@ typedef struct zt_face {
     real nx, ny, nz, off;
 } zt_face;
 
-/* The part of a ray from `in` to `out` that lies within something; none where in > out. What
- * `out` is then is where the ray comes nearest, if that is known. */
+/* The part of a ray from `in` to `out` that lies within something; none where in > out. */
 typedef struct zt_stretch {
     real in, out;
 } zt_stretch;
@@ -65,11 +64,12 @@ static inline zt_stretch stretch_hull(zt_stretch a, zt_stretch b) {
                         (some_b & (b.out > out)) ? b.out : out};
 }
 
-/* Where a ray meets a convex solid that it crosses along a stretch. */
+/* Where a ray meets a convex solid that it crosses along a stretch. If there is none, but it
+ * began inward, it hardly entered, and is out at once. */
 static inline real stretch_meet(zt_stretch s, int32_t leaving) {
-    real t = s.in > 0 ? s.in : s.out;
-    real elsewhere = ((s.in <= s.out) & (s.out > 0)) ? t : REAL_INFINITY;
-    real left = s.out > REAL_LEAST ? s.out : REAL_LEAST;
+    bool some = (s.in <= s.out) & (s.out > REAL_LEAST);
+    real left = some ? s.out : REAL_LEAST;
+    real elsewhere = some ? (s.in > 0 ? s.in : s.out) : REAL_INFINITY;
     return leaving == 0 ? elsewhere : leaving > 0 ? REAL_INFINITY : left;
 }
 
@@ -211,7 +211,7 @@ static inline zt_stretch cone_side_stretch(real fx, real fy, real fz, real ex, r
     real in = steep ? (widens ? second : -REAL_INFINITY) : first;
     real out = steep ? (widens ? REAL_INFINITY : first) : second;
     bool none = (!steep) & ((square < 0) | ((q == 0) & (c > 0)));
-    return (zt_stretch){none ? REAL_INFINITY : in, none ? k + t0 : out};
+    return (zt_stretch){none ? REAL_INFINITY : in, none ? -REAL_INFINITY : out};
 }
 
 static inline real zt_cone_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,

@@ -102,8 +102,11 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     (void)p1;
     real scale = 1 / real_sqrt(real_dot(ex, ey, ez, ex, ey, ez));
     torus_ray r = {0, 0, 0, ex * scale, ey * scale, ez * scale, p0};
-    real k = -real_dot(fx, fy, fz, r.ex, r.ey, r.ez);
-    r.gx = fx + k * r.ex, r.gy = fy + k * r.ey, r.gz = fz + k * r.ez;
+    /* In two steps, since from afar the first one falls short by its rounding. */
+    real jump = -real_dot(fx, fy, fz, r.ex, r.ey, r.ez);
+    r.gx = fx + jump * r.ex, r.gy = fy + jump * r.ey, r.gz = fz + jump * r.ez;
+    real rest = -real_dot(r.gx, r.gy, r.gz, r.ex, r.ey, r.ez), k = jump + rest;
+    r.gx += rest * r.ex, r.gy += rest * r.ey, r.gz += rest * r.ez;
     /* From where it begins, or from the ball around it, to that ball's end. */
     bool elsewhere = leaving == 0;
     real g2 = real_dot(r.gx, r.gy, r.gz, r.gx, r.gy, r.gz), g = real_sqrt(g2);
@@ -122,7 +125,8 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     real rounding = half * 16 * REAL_ROUNDING * p0;
     real end1 = t.high - half * (t.high - t.low0), end2 = t.low1 - half * (t.low1 - t.high);
     /* It enters before low0 or low1, or leaves before high or at last. */
-    bool at0 = real_max(real_max(low - t.low0, low0.h), half - (real)0.25) < 0;
+    real known = half * (t.low1 - t.low0) - REAL_LEAST; /* >= 0: low0 is the one it is on */
+    bool at0 = real_max(real_max(low - t.low0, low0.h + rounding), known) < 0;
     bool at1 = real_max(low - end1, rounding - high.h) < 0;
     real past = at0 ? -1 : real_max(low - end2, low1.h + rounding);
     real miss = real_max(past, real_max(-reach2, -k - reach)) < 0 ? 0 : REAL_INFINITY;
@@ -143,7 +147,7 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     c.span = top < REAL_INFINITY ? real_abs(t.high - bottom) : reach + real_abs(bottom);
     c.a = real_max(low, inside ? out_low : in_a);
     c.b = real_max(c.a, inside ? out_b : in_low);
-    return real_max((k + torus_root(&r, p, c)) * scale, REAL_LEAST) + miss;
+    return real_max((jump + (rest + torus_root(&r, p, c))) * scale, REAL_LEAST) + miss;
 }
 
 static inline zt_face zt_torus_surface(real x, real y, real z, real p0, real p1) {
