@@ -45,15 +45,14 @@ typedef struct tile {
 
 static int min_int(int a, int b) { return a < b ? a : b; }
 
-/* The pixels of a tile in the order of Morton's curve, so that each run of 4, 16 or 64 of them
- * is a square: rays that travel in one packet are close together in both directions. */
+/* The pixels of a tile in blocks of 4 x 4, row by row, and these in the order of Morton's
+ * curve, so that each run of 16 or 64 pixels is a square, and rays that travel in one packet
+ * are close together in both directions. */
 static void order_pixels(zt_render_work *work) {
     for (int i = 0; i < ZT_BATCH; i++) {
-        work->column[i] = work->row[i] = 0;
-        for (int bit = 0; bit < 4; bit++) {
-            work->column[i] |= (i >> (2 * bit) & 1) << bit;
-            work->row[i] |= (i >> (2 * bit + 1) & 1) << bit;
-        }
+        int block = i / 16, within = i % 16;
+        work->column[i] = 4 * ((block & 1) | (block >> 1 & 2)) + within % 4;
+        work->row[i] = 4 * ((block >> 1 & 1) | (block >> 2 & 2)) + within / 4;
     }
 }
 
@@ -75,14 +74,22 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
  * left out. */
 static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area,
                        int first, int most, bool seeds) {
-    int count = 0;
-    for (int i = first; i < first + most; i++) {
-        own->column[count] = area.x + work->column[i];
-        own->row[count] = area.y + work->row[i];
-        count += work->column[i] < area.width && work->row[i] < area.height;
+    int32_t *restrict column = own->column, *restrict row = own->row;
+    int count = most;
+    if (area.width == TILE_SIDE && area.height == TILE_SIDE) {
+        for (int i = 0; i < most; i++) {
+            column[i] = area.x + work->column[first + i];
+            row[i] = area.y + work->row[first + i];
+        }
+    } else {
+        count = 0;
+        for (int i = first; i < first + most; i++) {
+            column[count] = area.x + work->column[i];
+            row[count] = area.y + work->row[i];
+            count += work->column[i] < area.width && work->row[i] < area.height;
+        }
     }
-    for (int i = 0; seeds && i < count; i++)
-        own->seeds[i] = zt_sample_seeds(own->column[i], own->row[i]);
+    for (int i = 0; seeds && i < count; i++) own->seeds[i] = zt_sample_seeds(column[i], row[i]);
     return count;
 }
 
@@ -115,12 +122,24 @@ ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict
     }
 }
 
-static void fill_pixels(zt_image *image, const struct render_thread *own, int count) {
-    const zt_radiance *sum = &own->sum;
-    for (int i = 0; i < count; i++) {
-        size_t at = (size_t)own->row[i] * (size_t)image->width + (size_t)own->column[i];
-        memcpy(image->pixels + 4 * at, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1},
-               4 * sizeof(float));
+/* Writes means to the image, where a whole tile is listed four pixels of a row at a time. */
+ZT_CLONES static void fill_pixels(float *restrict pixels, int width,
+                                  const zt_radiance *restrict sum,
+                                  const int32_t *restrict column, const int32_t *restrict row,
+                                  int count, bool whole) {
+    enum { RUN = 4 };
+    for (int i = 0; whole && i < count; i += RUN) {
+        float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
+        for (int k = 0; k < RUN; k++) {
+            to[4 * k] = sum->r[i + k];
+            to[4 * k + 1] = sum->g[i + k];
+            to[4 * k + 2] = sum->b[i + k];
+            to[4 * k + 3] = 1;
+        }
+    }
+    for (int i = 0; !whole && i < count; i++) {
+        float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
+        memcpy(to, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1}, 4 * sizeof(float));
     }
 }
 
@@ -144,7 +163,8 @@ static bool render_block(frame *f, struct render_thread *own, tile area, int fir
             left_out += add_samples(&own->sum, own->taken, &own->light, k * count, count);
     }
     average(&own->sum, own->taken, count);
-    fill_pixels(f->image, own, count);
+    fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
+                count == most);
     if (left_out) atomic_fetch_add_explicit(&f->left_out_count, left_out, memory_order_relaxed);
     return true;
 }

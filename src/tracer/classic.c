@@ -117,10 +117,10 @@ static real cut(real x) {
     return low < 1 ? low : 1;
 }
 
-/* What a lamp gives each point where nothing is in between, and, where `hidden` is to be found
- * out, the shadow rays of those that it gives any; others look no distance, and meet nothing.
- * False where it gives nothing to any. */
-static inline bool shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
+/* What a lamp gives each point where nothing is in between: added to the sums; or, where it may
+ * be `hidden`, kept, with shadow rays for the points that it gives any. Others look no
+ * distance, and meet nothing. */
+static inline void shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
     const zt_origins *restrict from = &w->from;
     const zt_points *restrict p = &w->points;
     zt_batch *restrict shadow = &w->shadow;
@@ -135,44 +135,35 @@ static inline bool shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
         real r = cut(power.x * fade * p->color_r[k]);
         real g = cut(power.y * fade * p->color_g[k]);
         real b = cut(power.z * fade * p->color_b[k]);
-        bool wanted = r + g + b > 0;
-        w->lamp_r[k] = r;
-        w->lamp_g[k] = g;
-        w->lamp_b[k] = b;
-        w->wanted[k] = wanted;
         if (hidden) {
+            bool wanted = r + g + b > 0;
+            w->lamp_r[k] = r;
+            w->lamp_g[k] = g;
+            w->lamp_b[k] = b;
+            w->wanted[k] = wanted;
             shadow->dx[k] = vx * near;
             shadow->dy[k] = vy * near;
             shadow->dz[k] = vz * near;
             shadow->t[k] = wanted ? distance : 0;
             shadow->hit[k] = -1;
+        } else {
+            w->sum_r[k] += r;
+            w->sum_g[k] += g;
+            w->sum_b[k] += b;
         }
     }
     shadow->count = p->count;
-    return any_wanted(w, p->count);
 }
 
-/* Adds a lamp's light, where `hidden` is known only what nothing hides. */
-static inline void add_lamp(work *restrict w, bool hidden) {
+/* Adds a lamp's light where nothing hides it. */
+static void add_lamp(work *restrict w) {
     int padded = zt_batch_padded(w->points.count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        bool open = !hidden || w->shadow.hit[k] < 0;
+        bool open = w->shadow.hit[k] < 0;
         w->sum_r[k] += open ? w->lamp_r[k] : 0;
         w->sum_g[k] += open ? w->lamp_g[k] : 0;
         w->sum_b[k] += open ? w->lamp_b[k] : 0;
     }
-}
-
-/* Whether lamp light has to look for what is in its way; then the shadow rays are traced. */
-static bool shine_through(work *w, const zt_tracer *tracer, const zt_lamp *lamp,
-                          const zt_box *around) {
-    zt_bundle bundle = zt_bundle_to(*around, lamp->position, w->points.source);
-    bool hidden = lamp->shadows && may_meet(&bundle, tracer);
-    if (!hidden)
-        shine(w, lamp, false);
-    else if (shine(w, lamp, true))
-        occlude(&w->shadow, &bundle, tracer);
-    return hidden;
 }
 
 static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box *around) {
@@ -184,10 +175,16 @@ static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box
         w->sum_b[k] = tracer->ambient.z * p->color_b[k];
     }
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
-        if (shine_through(w, tracer, &tracer->lamps[i], around))
-            add_lamp(w, true);
-        else
-            add_lamp(w, false);
+        const zt_lamp *lamp = &tracer->lamps[i];
+        zt_bundle bundle = zt_bundle_to(*around, lamp->position, p->source);
+        if (!lamp->shadows || !may_meet(&bundle, tracer)) {
+            shine(w, lamp, false);
+            continue;
+        }
+        shine(w, lamp, true);
+        if (!any_wanted(w, p->count)) continue;
+        occlude(&w->shadow, &bundle, tracer);
+        add_lamp(w);
     }
 }
 
@@ -215,7 +212,8 @@ static inline void mirror_ray(work *restrict w, int k) {
     real twice = -2 * real_dot(nx, ny, nz, rays->dx[k], rays->dy[k], rays->dz[k]);
     real dx = rays->dx[k] + twice * nx, dy = rays->dy[k] + twice * ny,
          dz = rays->dz[k] + twice * nz;
-    real unit = 1 / real_sqrt(real_dot(dx, dy, dz, dx, dy, dz));
+    /* Unit but for roundings, of which one step of Newton's for 1 / sqrt leaves none. */
+    real unit = (real)1.5 - (real)0.5 * real_dot(dx, dy, dz, dx, dy, dz);
     rays->dx[k] = dx * unit;
     rays->dy[k] = dy * unit;
     rays->dz[k] = dz * unit;
@@ -323,9 +321,11 @@ static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer) {
     zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
-        bool hidden = shine_through(w, tracer, lamp, &around);
+        zt_bundle bundle = zt_bundle_to(around, lamp->position, w->points.source);
+        shine(w, lamp, true);
+        if (lamp->shadows) occlude(&w->shadow, &bundle, tracer);
         for (int k = 0; k < w->points.count; k++) {
-            bool open = w->wanted[k] && (!hidden || w->shadow.hit[k] < 0);
+            bool open = w->wanted[k] && w->shadow.hit[k] < 0;
             probes[w->points.pixel[k]].lit |= (uint64_t)open << (lamp->light & 63);
         }
     }

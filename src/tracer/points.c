@@ -29,17 +29,23 @@ static void go_to_ends(zt_points *restrict w, const zt_batch *restrict rays,
 }
 
 /* The looks of point k; the normal, and the corrected position, where its kind is one of which
- * a zt_surface says all. A row of zeros leaves the position as it is. */
+ * a zt_surface says all. A row of zeros leaves the position as it is. Normals of what is not
+ * bent are unit as they are: `flat` says that before the loop, and changes nothing. */
 static inline void find_surface(zt_points *restrict w, zt_origins *restrict from, int k,
-                                const zt_surface *s) {
+                                const zt_surface *s, bool flat) {
     real qx = from->x[k] - s->center.x, qy = from->y[k] - s->center.y,
          qz = from->z[k] - s->center.z;
-    real nx = s->normal.x + s->bend * qx, ny = s->normal.y + s->bend * qy,
-         nz = s->normal.z + s->bend * qz;
-    real unit = 1 / real_sqrt(real_max(real_dot(nx, ny, nz, nx, ny, nz), REAL_LEAST));
-    nx *= unit;
-    ny *= unit;
-    nz *= unit;
+    real nx = s->normal.x, ny = s->normal.y, nz = s->normal.z;
+    if (!flat) {
+        nx += s->bend * qx;
+        ny += s->bend * qy;
+        nz += s->bend * qz;
+        real length = real_sqrt(real_max(real_dot(nx, ny, nz, nx, ny, nz), REAL_LEAST));
+        real unit = s->bend == 0 ? 1 : 1 / length;
+        nx *= unit;
+        ny *= unit;
+        nz *= unit;
+    }
     real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
     from->x[k] -= off * nx;
     from->y[k] -= off * ny;
@@ -64,11 +70,14 @@ static void find_surfaces(zt_points *restrict w, zt_origins *restrict from,
     w->source = others ? -1 : first;
     if (others) {
         WIDE_LOOP for (int k = 0; k < padded; k++)
-            find_surface(w, from, k, &tracer->surfaces[w->primitive[k]]);
-    } else {
-        const zt_surface only = tracer->surfaces[first];
-        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only);
+            find_surface(w, from, k, &tracer->surfaces[w->primitive[k]], false);
+        return;
     }
+    const zt_surface only = tracer->surfaces[first];
+    if (only.bend == 0)
+        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, true);
+    else
+        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, false);
 }
 
 /* Lists the points that lie on primitives of a kind. */
