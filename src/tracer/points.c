@@ -186,11 +186,12 @@ static void share(double *shares, const mesh_point *p) {
     shares[0] = 1 - shares[1] - shares[2];
 }
 
-static void color_mesh(zt_points *w, const mesh_point *p, int k) {
+static void color_mesh(zt_points *w, const zt_batch *rays, const zt_tracer *tracer, int k) {
     double shares[3], color[3] = {0, 0, 0};
-    share(shares, p);
+    mesh_point p = mesh_point_of(w, rays, tracer, k);
+    share(shares, &p);
     for (int i = 0; i < 3; i++) {
-        const float *c = p->placed->built->mesh->colors + 3 * (int64_t)p->of[i];
+        const float *c = p.placed->built->mesh->colors + 3 * (int64_t)p.of[i];
         for (int channel = 0; channel < 3; channel++)
             color[channel] += shares[i] * (double)c[channel];
     }
@@ -199,23 +200,75 @@ static void color_mesh(zt_points *w, const mesh_point *p, int k) {
     w->color_b[k] *= (real)color[2];
 }
 
-static void find_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
-    mesh_point p = mesh_point_of(w, rays, tracer, k);
-    zt_origins *from = rays->from;
-    vec3 gradient = out_of_mesh(p.placed, p.area);
-    double squared = vec3_dot(gradient, gradient);
-    double step = vec3_dot(p.area, vec3_sub(p.v[0], p.at)) / squared;
-    vec3 normal = vec3_scale(gradient, 1 / sqrt(squared));
-    from->x[k] = (real)((double)from->x[k] + step * gradient.x);
-    from->y[k] = (real)((double)from->y[k] + step * gradient.y);
-    from->z[k] = (real)((double)from->z[k] + step * gradient.z);
-    real largest =
-        real_max(real_max(real_abs(from->x[k]), real_abs(from->y[k])), real_abs(from->z[k]));
-    from->near[k] = MESH_MARGIN * (largest + p.placed->extent);
-    w->nx[k] = (real)normal.x;
-    w->ny[k] = (real)normal.y;
-    w->nz[k] = (real)normal.z;
-    if (p.placed->vertex_colors) color_mesh(w, &p, k);
+/* The corners of triangles of a mesh, as their numbers stand. */
+typedef struct facets {
+    alignas(64) float v[3][3][ZT_BATCH]; /* by corner and axis */
+} facets;
+
+static void load_facets(facets *f, const zt_mesh *mesh, const int32_t *part, int count,
+                        const int32_t *list) {
+    for (int j = 0; j < count; j++) {
+        const uint32_t *of = mesh->triangles + 3 * (int64_t)part[list[j]];
+        for (int i = 0; i < 3; i++) {
+            const float *p = mesh->positions + 3 * (int64_t)of[i];
+            for (int axis = 0; axis < 3; axis++) f->v[i][axis][j] = p[axis];
+        }
+    }
+}
+
+/* Listed points on one mesh: the normal, and the position corrected along it, in double
+ * precision. With the plane n . (q - v0) = 0 of the mesh's space, q = M p + a, the gradient for
+ * p is M^T n. */
+static void find_facets(zt_points *restrict w, zt_origins *restrict from,
+                        const facets *restrict f, const zt_placed_mesh *m,
+                        const int32_t *restrict list, int count) {
+    const vec3 rx = m->rows[0], ry = m->rows[1], rz = m->rows[2], at = m->at;
+    const real extent = m->extent;
+    WIDE_LOOP for (int j = 0; j < count; j++) {
+        int32_t k = list[j];
+        double px = (double)from->x[k], py = (double)from->y[k], pz = (double)from->z[k];
+        double vx = (double)f->v[0][0][j], vy = (double)f->v[0][1][j],
+               vz = (double)f->v[0][2][j];
+        double ex = (double)f->v[1][0][j] - vx, ey = (double)f->v[1][1][j] - vy,
+               ez = (double)f->v[1][2][j] - vz;
+        double fx = (double)f->v[2][0][j] - vx, fy = (double)f->v[2][1][j] - vy,
+               fz = (double)f->v[2][2][j] - vz;
+        double nx = ey * fz - ez * fy, ny = ez * fx - ex * fz, nz = ex * fy - ey * fx;
+        double qx = rx.x * px + rx.y * py + rx.z * pz + at.x - vx;
+        double qy = ry.x * px + ry.y * py + ry.z * pz + at.y - vy;
+        double qz = rz.x * px + rz.y * py + rz.z * pz + at.z - vz;
+        double gx = rx.x * nx + ry.x * ny + rz.x * nz, gy = rx.y * nx + ry.y * ny + rz.y * nz,
+               gz = rx.z * nx + ry.z * ny + rz.z * nz;
+        double unit = 1 / sqrt(gx * gx + gy * gy + gz * gz);
+        gx *= unit;
+        gy *= unit;
+        gz *= unit;
+        double step = (nx * qx + ny * qy + nz * qz) * unit;
+        real x = (real)(px - step * gx), y = (real)(py - step * gy), z = (real)(pz - step * gz);
+        real largest = real_max(real_max(real_abs(x), real_abs(y)), real_abs(z));
+        from->x[k] = x;
+        from->y[k] = y;
+        from->z[k] = z;
+        from->near[k] = MESH_MARGIN * (largest + extent);
+        w->nx[k] = (real)gx;
+        w->ny[k] = (real)gy;
+        w->nz[k] = (real)gz;
+    }
+}
+
+/* Listed points on meshes, by runs that lie on the same one. */
+static void find_meshes(zt_points *w, zt_batch *rays, const zt_tracer *tracer,
+                        const int32_t *list, int count) {
+    facets f;
+    for (int first = 0, end; first < count; first = end) {
+        int32_t primitive = w->primitive[list[first]];
+        for (end = first + 1; end < count && w->primitive[list[end]] == primitive;) end++;
+        const zt_placed_mesh *m = &tracer->placed[tracer->primitives[primitive].placed];
+        load_facets(&f, m->built->mesh, rays->part, end - first, list + first);
+        find_facets(w, rays->from, &f, m, list + first, end - first);
+        for (int j = first; m->vertex_colors && j < end; j++)
+            color_mesh(w, rays, tracer, list[j]);
+    }
 }
 
 /* Bends the normal of a smooth mesh's point, and lifts the point onto the surface that the bent
@@ -326,7 +379,7 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
         for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
             solids[kind](w, from, tracer, list, list_kind(list, w, tracer, kind));
     if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
-    for (int j = 0; j < mesh_count; j++) find_mesh(w, rays, tracer, list[j]);
+    find_meshes(w, rays, tracer, list, mesh_count);
     if (tracer->has_patterns) weave(w, from, tracer);
     face_rays(w, rays, from);
     leave_surfaces(w, from);

@@ -63,6 +63,21 @@ typedef struct lanes {
     alignas(64) int32_t meets[ZT_BATCH_LANES];
 } lanes;
 
+/* How far the rays of a group look: shadow rays that are hidden already, and lanes beyond the
+ * count, nowhere. */
+static void look_ahead(lanes *restrict l, const search *restrict s, int first) {
+    const zt_batch *restrict rays = s->rays;
+    const real *restrict near = rays->from->near;
+    const int count = rays->count;
+    if (s->any) WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+            real until = (rays->t[first + j] - near[first + j]) * (1 - TIE);
+            l->t[j] = rays->hit[first + j] < 0 ? until : 0;
+        }
+    else
+        memcpy(l->t, rays->t + first, sizeof l->t);
+    for (int j = count - first; j < ZT_BATCH_LANES; j++) l->t[j] = 0;
+}
+
 static void enter_mesh(lanes *restrict l, const search *restrict s, int first) {
     const zt_batch *restrict rays = s->rays;
     const zt_origins *restrict from = rays->from;
@@ -72,27 +87,26 @@ static void enter_mesh(lanes *restrict l, const search *restrict s, int first) {
     const real rzx = (real)m->rows[2].x, rzy = (real)m->rows[2].y, rzz = (real)m->rows[2].z;
     const real ax = (real)m->at.x, ay = (real)m->at.y, az = (real)m->at.z;
     const real reach = m->reach, room = m->room;
-    const bool any = s->any;
-    const int count = rays->count;
     WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
         int i = first + j;
         real ox = from->x[i], oy = from->y[i], oz = from->z[i];
-        real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i], t = rays->t[i];
+        real dx, dy, dz;
         real largest = real_max(real_max(real_abs(ox), real_abs(oy)), real_abs(oz));
-        bool looks = (i < count) & (!any | (rays->hit[i] < 0));
-        real until = any ? (t - from->near[i]) / (1 + TIE) : t;
         l->ox[j] = real_dot(rxx, rxy, rxz, ox, oy, oz) + ax;
         l->oy[j] = real_dot(ryx, ryy, ryz, ox, oy, oz) + ay;
         l->oz[j] = real_dot(rzx, rzy, rzz, ox, oy, oz) + az;
-        l->dx[j] = real_dot(rxx, rxy, rxz, dx, dy, dz);
-        l->dy[j] = real_dot(ryx, ryy, ryz, dx, dy, dz);
-        l->dz[j] = real_dot(rzx, rzy, rzz, dx, dy, dz);
-        l->kx[j] = 1 / l->dx[j];
-        l->ky[j] = 1 / l->dy[j];
-        l->kz[j] = 1 / l->dz[j];
-        l->t[j] = looks ? until : 0;
+        dx = real_dot(rxx, rxy, rxz, rays->dx[i], rays->dy[i], rays->dz[i]);
+        dy = real_dot(ryx, ryy, ryz, rays->dx[i], rays->dy[i], rays->dz[i]);
+        dz = real_dot(rzx, rzy, rzz, rays->dx[i], rays->dy[i], rays->dz[i]);
+        l->dx[j] = dx;
+        l->dy[j] = dy;
+        l->dz[j] = dz;
+        l->kx[j] = 1 / dx;
+        l->ky[j] = 1 / dy;
+        l->kz[j] = 1 / dz;
         l->room[j] = 32 * REAL_ROUNDING * (reach * largest + room);
     }
+    look_ahead(l, s, first);
 }
 
 /* Adds to `meets` the rays that meet a box, grown by their room, before their t; a doubt (what
