@@ -121,19 +121,30 @@ static void bounds_of_box(const struct RTCBoundsFunctionArguments *arguments) {
                                               .upper_z = high[2]};
 }
 
+/* Where members of Embree's ray packets stand, each of them one element for each lane. */
+enum { MEMBER_FAR = 8, MEMBER_ID = 10 };
+
+/* Embree hands on as many lanes at a time as it has instructions for, in an order of its own
+ * where that is not 16: they are told by their numbers, which lanes that are not valid need not
+ * have. */
 ZT_CLONES static void visit_box(const struct RTCIntersectFunctionNArguments *arguments) {
     const look *l = (const look *)arguments->context;
+    unsigned lane_count = arguments->N;
+    float *packet_far = (float *)arguments->rayhit + MEMBER_FAR * (size_t)lane_count;
+    const unsigned *number = (unsigned *)arguments->rayhit + MEMBER_ID * (size_t)lane_count;
     const float *far = l->rays->far + l->first;
     uint32_t lanes = 0;
-    for (int lane = 0; lane < LANES; lane++)
-        lanes |= (uint32_t)(arguments->valid[lane] & (far[lane] > 0)) << lane;
+    for (unsigned k = 0; k < lane_count; k++) {
+        unsigned i = number[k] % LANES;
+        lanes |= (uint32_t)(arguments->valid[k] & (far[i] > 0)) << i;
+    }
     if (!lanes) return;
     l->visit(l->user, (int32_t)arguments->primID, l->first, lanes);
-    struct RTCRayHit16 *packet = (struct RTCRayHit16 *)arguments->rayhit;
-    for (int lane = 0; lane < LANES; lane++)
-        packet->ray.tfar[lane] =
-            far[lane] > 0 ? (float)((double)far[lane] * l->stretch[lane] - l->moved[lane])
-                          : -INFINITY;
+    for (unsigned k = 0; k < lane_count; k++) {
+        unsigned i = number[k] % LANES;
+        double left = (double)far[i] * l->stretch[i] - l->moved[i];
+        packet_far[k] = far[i] > 0 ? (float)left : -INFINITY;
+    }
 }
 
 static zt_status new_hierarchy(zt_bvh **out, const zt_embree *embree) {
@@ -227,7 +238,6 @@ ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restric
         packet->dir_x[lane] = dx * shrink;
         packet->dir_y[lane] = dy * shrink;
         packet->dir_z[lane] = dz * shrink;
-        packet->tfar[lane] = left;
         l->stretch[lane] = stretch;
         l->moved[lane] = moved;
         /* Also false where a number is not finite. */
@@ -235,6 +245,7 @@ ZT_CLONES static bool load_packet(struct RTCRay16 *restrict packet, int *restric
         int looks =
             -((lane < count) & near & (far > 0) & (left > 0) & (length > 0) & (shrink > 0));
         valid[lane] = looks;
+        packet->tfar[lane] = looks ? left : -INFINITY; /* not all packets heed `valid` */
         any |= looks;
     }
     return any != 0;
@@ -249,6 +260,7 @@ static void embree_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind,
     alignas(64) struct RTCRayHit16 packet = {0}; /* what no ray changes is set once */
     memset(packet.ray.mask, 0xff, sizeof packet.ray.mask);
     memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID);
+    for (unsigned lane = 0; lane < LANES; lane++) packet.ray.id[lane] = lane;
     for (; l.first < rays->count; l.first += LANES) {
         alignas(64) int valid[LANES];
         if (load_packet(&packet.ray, valid, &l, rays, h))
