@@ -486,7 +486,11 @@ static void aim(shot *s, const closed_mesh *m, draw *d, double shift) {
 
 static int64_t ray_count(void) {
     const char *asked = getenv("ZT_TEST_RAYS");
+#ifdef __SANITIZE_ADDRESS__
+    return asked ? atoll(asked) : 1000000;
+#else
     return asked ? atoll(asked) : 10000000;
+#endif
 }
 
 static void shoot_closed(closed_mesh mesh, double shift, int64_t rays) {

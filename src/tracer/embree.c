@@ -28,10 +28,12 @@
 enum { LANES = ZT_BVH_LANES };
 
 #define GROWN 0x1p-18f /* by how much boxes are grown */
-#define BEFORE                                                                                 \
-    2 /* from the point nearest to the center: all boxes are within sqrt(3) of that */
-#define REACH                                                                                  \
-    8 /* of origins then, for rays that can touch any: sqrt(3 + 3 (2 * 2)^2) is less */
+/* Moved origins are so much of a ray's t before the point nearest to the center, and within so
+ * much of the center for rays that can touch boxes: these are within sqrt(3) of it, a t of 1 is
+ * sqrt(12) at most. */
+#define BEFORE 2
+#define REACH  8
+/* How much further than asked is looked, for the roundings of far itself. */
 #define FURTHER (1 + 0x1p-20)
 
 struct zt_embree {
