@@ -31,8 +31,9 @@ typedef struct zt_bvh_box {
 } zt_bvh_box;
 
 /* The builder: Embree's device. Opening it starts nothing; threads that build, 0 for one a
- * core, are started by the first hierarchy. Hierarchies of one builder are built one at a
- * time; looking is legal from any number of threads. */
+ * core, are started by the first hierarchy; where there are several builders in a process, the
+ * last one to start says how many. Hierarchies of one builder are built one at a time; looking
+ * is legal from any number of threads. */
 typedef struct zt_bvh_builder zt_bvh_builder;
 zt_status zt_bvh_open(zt_bvh_builder **builder, int threads, zt_listener listener);
 void zt_bvh_close(zt_bvh_builder **builder);       /* after all of its hierarchies */
