@@ -41,10 +41,11 @@ set(doors
     "yaml.h|description/document.c"
     "embree|tracer/embree.c"
     "libav|encode/video.c"
+    "libsw|encode/video.c"
     "librsvg/|encode/raster.c")
 
 # Headers of C, POSIX and the compiler that any file may include, and those of C++, which have no ending.
-set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|immintrin|inttypes|limits|locale|math|memory|sched|setjmp|\
+set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
 signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
 unistd|sys/[a-z]+)(\\.h)?$")
 

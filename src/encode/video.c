@@ -10,12 +10,13 @@
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libswscale/swscale.h>
 
 #include "base/diag.h"
 #include "base/text.h"
 #include "encode/aside.h"
 #include "encode/video.h"
-#include "image/yuv.h"
+#include "image/develop.h"
 
 static const char quality[] = "18" /* CRF */;
 /* Four threads take a tenth more of the cores than one does. */
@@ -25,7 +26,8 @@ typedef struct movie {
     AVFormatContext *container;
     AVCodecContext *encoder;
     AVStream *stream; /* the container's */
-    AVFrame *yuv;     /* one picture developed */
+    struct SwsContext *converter;
+    AVFrame *rgb, *yuv; /* one picture developed, and converted */
     AVPacket *packet;
     int64_t frame_count;
     zt_view view;
@@ -114,14 +116,42 @@ static zt_status check_preset(const char *target, const char *preset, zt_listene
     return ZT_EARGUMENT;
 }
 
-static zt_status make_frame(movie *m, const zt_output_format *format) {
-    m->yuv = av_frame_alloc();
-    if (!m->yuv) return ZT_EMEMORY;
-    m->yuv->width = format->width;
-    m->yuv->height = format->height;
-    m->yuv->format = AV_PIX_FMT_YUV420P;
-    tag_frame(m->yuv);
-    AV_TRY(m, av_frame_get_buffer(m->yuv, 0));
+static zt_status make_frame(movie *m, AVFrame **frame, const zt_output_format *format,
+                            enum AVPixelFormat pixels) {
+    *frame = av_frame_alloc();
+    if (!*frame) return ZT_EMEMORY;
+    (*frame)->width = format->width;
+    (*frame)->height = format->height;
+    (*frame)->format = pixels;
+    AV_TRY(m, av_frame_get_buffer(*frame, 0));
+    return ZT_OK;
+}
+
+/* From full-range R'G'B' to BT.709 limited range, rounded and with chroma from all pixels. */
+static zt_status make_converter(movie *m) {
+    m->converter = sws_alloc_context();
+    if (!m->converter) return ZT_EMEMORY;
+    const struct {
+        const char *name;
+        int64_t value;
+    } options[] = {
+        {"srcw", m->rgb->width},
+        {"srch", m->rgb->height},
+        {"src_format", m->rgb->format},
+        {"src_range", 1},
+        {"dstw", m->yuv->width},
+        {"dsth", m->yuv->height},
+        {"dst_format", m->yuv->format},
+        {"dst_range", 0},
+        {"dst_h_chr_pos", 0},   /* left in its pair of pixels, */
+        {"dst_v_chr_pos", 128}, /* in the middle between its rows */
+        {"sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP | SWS_BITEXACT},
+    };
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+        AV_TRY(m, av_opt_set_int(m->converter, options[i].name, options[i].value, 0));
+    AV_TRY(m, sws_init_context(m->converter, NULL, NULL));
+    const int *bt709 = sws_getCoefficients(SWS_CS_ITU709);
+    AV_TRY(m, sws_setColorspaceDetails(m->converter, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
     return ZT_OK;
 }
 
@@ -187,6 +217,8 @@ static void movie_free(movie *m) {
     if (m->container) avio_closep(&m->container->pb);
     avformat_free_context(m->container);
     avcodec_free_context(&m->encoder);
+    sws_freeContext(m->converter);
+    av_frame_free(&m->rgb);
     av_frame_free(&m->yuv);
     av_packet_free(&m->packet);
     zt_aside_drop(&m->aside);
@@ -198,7 +230,10 @@ static zt_status open_all(movie *m, const char *target, const zt_output_format *
     AVRational rate;
     av_reduce(&rate.num, &rate.den, format->rate.num, format->rate.den, INT32_MAX);
     ZT_TRY(zt_aside_open(&m->aside, target, m->listener));
-    ZT_TRY(make_frame(m, format));
+    ZT_TRY(make_frame(m, &m->rgb, format, AV_PIX_FMT_RGB24));
+    ZT_TRY(make_frame(m, &m->yuv, format, AV_PIX_FMT_YUV420P));
+    tag_frame(m->yuv);
+    ZT_TRY(make_converter(m));
     ZT_TRY(open_encoder(m, rate, settings));
     ZT_TRY(open_container(m, rate));
     m->packet = av_packet_alloc();
@@ -241,8 +276,12 @@ static zt_status write_movie(void *state, const zt_image *image, int64_t frame) 
     (void)frame; /* a movie has no gaps and begins at 0, whatever the numbers */
     movie *m = state;
     *complaint = '\0';
+    zt_develop_rgb8(m->rgb->data[0], (size_t)m->rgb->linesize[0], image, m->view, 0,
+                    image->height);
     AV_TRY(m, av_frame_make_writable(m->yuv)); /* a copy, should the encoder still hold it */
-    zt_develop_yuv420(m->yuv->data, m->yuv->linesize, image, m->view);
+    const uint8_t *const *rgb = (const uint8_t *const *)m->rgb->data;
+    AV_TRY(m, sws_scale(m->converter, rgb, m->rgb->linesize, 0, image->height, m->yuv->data,
+                        m->yuv->linesize));
     m->yuv->pts = m->frame_count++;
     return encode(m, m->yuv);
 }

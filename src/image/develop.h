@@ -12,11 +12,6 @@
 void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
                      int first, int last);
 
-/* The same for pixels in a row, at most 2^28 of them, to 4 bytes each: R G B, and what A
- * becomes.
- */
-void zt_develop_rgbx8(uint8_t *bytes, const float *pixels, int count, zt_view view);
-
 /* The same to 16 bits: rows `stride` bytes apart, each value the nearest of the 65536. Some
  * fifty times slower: for files, not for films. */
 void zt_develop_rgb16(uint16_t *values, size_t stride, const zt_image *image, zt_view view,

@@ -4,6 +4,7 @@
 #ifndef ZT_TRACER_ISA_H
 #define ZT_TRACER_ISA_H
 
+#include "base/wide.h"
 #include "tracer/real.h"
 
 #define ZT_ISA_PASTE_(name, isa) name##_##isa
@@ -15,13 +16,6 @@
 #define WIDE_LOOP _Pragma("clang loop vectorize(assume_safety)")
 #else
 #define WIDE_LOOP _Pragma("GCC ivdep")
-#endif
-
-/* For one function alone: compiled for each width as well, the loader chooses. */
-#if defined __x86_64__
-#define ZT_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ZT_CLONES
 #endif
 
 #endif
