@@ -76,6 +76,13 @@ static void misuse(void **state) {
         {"render film.yaml --preset fast -o film.hash", "no option \"preset\" for checksums"},
         {"frame film.yaml 1 --preset fast", "no option \"preset\" for images"},
         {"check film.yaml --preset fast", "check takes no --preset"},
+        {"render film.yaml --precision half",
+         "--precision half: must be single, double or auto"},
+        {"check film.yaml --precision single", "check takes no --precision"},
+        {"explain film.yaml --precision double", "explain takes no --precision"},
+        {"explain film.yaml ball.center@1 ball", "one word too many: ball"},
+        {"explain film.yaml ball.center@1 --frames 1", "--frames or a property, not both"},
+        {"explain film.yaml --frames 6", "no frame 6: the film has frames 0 to 5"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         run *r = zoetrope(cases[i].arguments);
@@ -188,6 +195,40 @@ static void settings(void **state) {
     assert_contains(line_of(a, some, 0), "16x10"); /* 9 rows made even */
 }
 
+/* Rays of one precision or the other, and single where nothing asks for more, as explain says;
+ * it says so of the frames that it is asked for. */
+static void precision(void **state) {
+    (void)state;
+    char chosen[TEXT_MAX], alone[TEXT_MAX], twice[TEXT_MAX];
+    zoetrope_succeeds("render film.yaml -o auto.hash");
+    zoetrope_succeeds("render film.yaml -o single.hash --precision single");
+    zoetrope_succeeds("render film.yaml -o double.hash --precision=double");
+    zoetrope_succeeds("render film.yaml -o again.hash --precision=auto");
+    read_text(chosen, "auto.hash");
+    read_text(alone, "single.hash");
+    read_text(twice, "double.hash");
+    assert_string_equal(chosen, alone);
+    assert_string_not_equal(chosen, twice);
+    read_text(alone, "again.hash");
+    assert_string_equal(chosen, alone);
+    run *r = zoetrope("explain film.yaml");
+    assert_int_equal(r->code, 0);
+    assert_string_equal(
+        r->out, "frames 0 to 5: single precision: its roundings stay below what can be seen\n");
+    r = zoetrope("explain film.yaml --frames 3");
+    assert_contains(r->out, "frame 3: single precision");
+    /* So large that it is a ground, from afar and from near. */
+    r = zoetrope("explain film.yaml --set ball.radius=1e4 --set camera.position=[0,1.5e4,0]");
+    assert_int_equal(r->code, 0);
+    assert_contains(r->out, "single");
+    r = zoetrope("explain film.yaml --set ball.radius=1e4 --set camera.position=[0,10002,0]");
+    assert_contains(r->out, "double precision: the camera is 1 from ball");
+    r = zoetrope("frame film.yaml 2 --precision=single -ox.png --set ball.radius=1e4 "
+                 "--set camera.position=[0,10002,0]");
+    assert_int_equal(r->code, 0);
+    assert_contains(r->err, "warning: frame 2 asks for double precision: the camera is 1 from");
+}
+
 /* Where images go by default; what is told of it, and what is not when quiet. */
 static void default_targets(void **state) {
     (void)state;
@@ -211,9 +252,9 @@ static void default_targets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DIRECTORY(help_and_version), IN_DIRECTORY(misuse), IN_DIRECTORY(mistakes),
-        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),  IN_DIRECTORY(settings),
-        IN_DIRECTORY(default_targets),
+        IN_DIRECTORY(help_and_version), IN_DIRECTORY(misuse),          IN_DIRECTORY(mistakes),
+        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),           IN_DIRECTORY(settings),
+        IN_DIRECTORY(precision),        IN_DIRECTORY(default_targets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

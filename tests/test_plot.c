@@ -82,7 +82,6 @@ static void misuse(void **state) {
     const struct {
         const char *arguments, *told;
     } cases[] = {
-        {"explain moving.yaml", "explain needs FILE NAME@TIME"},
         {"explain moving.yaml camera.fov", "lamp.position@37"},
         {"explain moving.yaml @3", "lamp.position@37"},
         {"explain moving.yaml camera.fov@", "lamp.position@37"},

@@ -16,10 +16,10 @@ typedef struct zt_renderer zt_renderer;
 
 /* Zero means: as the description says, or as the machine offers (threads). */
 typedef struct zt_render_settings {
-    int width, height; /* pixels; both or neither */
-    int samples;       /* a pixel */
-    int threads;       /* one a core by default; the images do not depend on it */
-    zt_precision precision;
+    int width, height;      /* pixels; both or neither */
+    int samples;            /* a pixel */
+    int threads;            /* one a core by default; the images do not depend on it */
+    zt_precision precision; /* where single is not enough for a frame, a warning tells, once */
 } zt_render_settings;
 
 /* Is told after each frame of a sequence, and asked often, from any thread, whether to stop. */
@@ -41,6 +41,17 @@ zt_output_format zt_renderer_format(const zt_renderer *renderer);
  * are legal: their curves hold. ZT_ESTOPPED when the watcher (may be NULL) said so. */
 zt_status zt_renderer_frame(zt_renderer *renderer, int64_t frame, zt_image *image,
                             const zt_watcher *watcher);
+
+/* In which precision a frame is rendered, and why. */
+typedef struct zt_frame_precision {
+    zt_precision precision; /* not ZT_PRECISION_AUTO */
+    int64_t cause;  /* the same for frames of which the same is to say but for numbers */
+    char text[320]; /* "double precision: the camera is 0.001 from ground, whose numbers ..." */
+} zt_frame_precision;
+
+/* Finds out without rendering. Fails as rendering does. */
+zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *renderer,
+                                int64_t frame);
 
 /* Renders frames first .. last, both included, to an output, writing behind the rendering. When
  * it is stopped or fails, the frames written before are complete, and the output can be closed.

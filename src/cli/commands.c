@@ -1,12 +1,14 @@
 #include "cli/commands.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <string.h>
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
 #define ONE_FRAME                                                                              \
-    (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRESET))
+    (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION) |       \
+     BIT(PRESET))
 
 static const char images[] =
     "  film.mp4         a movie, H.264\n"
@@ -17,22 +19,22 @@ static const char drawings[] = "  curves.svg       a drawing\n"
                                "  curves.png       the same as an image\n";
 
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
-    [ZT_COMMAND_RENDER] = {"render", "FILE", 1, false,
+    [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
                            images, ONE_FRAME | BIT(FRAMES)},
-    [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, false, "Frame N alone becomes an image",
+    [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
                           "output/NAME.NNNN.png", images, ONE_FRAME},
-    [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, false,
+    [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
                             "A quick movie: a quarter of the size, one sample a pixel",
                             "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},
-    [ZT_COMMAND_CHECK] = {"check", "FILE", 1, false,
+    [ZT_COMMAND_CHECK] = {"check", "FILE", 1, 0,
                           "Tells mistakes, what is probably not meant, what FILE holds", NULL,
                           NULL, ANYWHERE},
-    [ZT_COMMAND_EXPLAIN] = {"explain", "FILE NAME@TIME", 2, false,
-                            "Tells what a property does at a frame or a time, and why: "
-                            "ball.center@37",
-                            NULL, NULL, ANYWHERE},
-    [ZT_COMMAND_CURVES] = {"curves", "FILE [NAME...]", 1, true,
+    [ZT_COMMAND_EXPLAIN] = {"explain", "FILE [NAME@TIME]", 1, 1,
+                            "Tells what a property does at a frame, and why: "
+                            "ball.center@37; or the frames' precision",
+                            NULL, NULL, ANYWHERE | BIT(FRAMES)},
+    [ZT_COMMAND_CURVES] = {"curves", "FILE [NAME...]", 1, INT_MAX,
                            "Plots properties over time, or all that move: ball.center",
                            "output/NAME.curves.svg", drawings,
                            ANYWHERE | BIT(OUTPUT) | BIT(FRAMES)},
@@ -46,6 +48,8 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
     [ZT_OPTION_THREADS] = {"threads", 0, "N",
                            "instead of one a core; the images stay the same"},
+    [ZT_OPTION_PRECISION] = {"precision", 0, "double",
+                             "or single, of all rays, instead of what each frame asks for"},
     [ZT_OPTION_PRESET] = {"preset", 0, "medium",
                           "of the movie's encoder, ultrafast .. veryfast .. placebo"},
     [ZT_OPTION_SET] = {"set", 0, "NAME=40",
@@ -105,7 +109,7 @@ static void print_option(FILE *stream, const zt_option_row *row) {
         fprintf(stream, "  -%c, ", row->letter);
     else
         fputs("      ", stream);
-    fprintf(stream, "%-16s  %s\n", name, row->help);
+    fprintf(stream, "%-18s  %s\n", name, row->help);
 }
 
 static void print_summary(FILE *stream) {
@@ -113,7 +117,7 @@ static void print_summary(FILE *stream) {
           "Makes a film of FILE, the description of an animation.\n\nCommands:\n",
           stream);
     for (int i = 0; i < ZT_COMMAND_COUNT; i++)
-        fprintf(stream, "  %-7s %-14s  %s\n", zt_commands[i].name, zt_commands[i].words,
+        fprintf(stream, "  %-7s %-16s  %s\n", zt_commands[i].name, zt_commands[i].words,
                 zt_commands[i].help);
 }
 

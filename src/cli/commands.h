@@ -20,7 +20,7 @@ typedef struct zt_command_row {
     const char *name;
     const char *words; /* that it needs: "FILE N" */
     int word_count;
-    bool more_words; /* than those it needs */
+    int more_words; /* than those it needs, at most */
     const char *help;
     const char *target; /* where its images go by default, as help shows it; NULL: none */
     const char *forms;  /* of the target, for help */
@@ -35,6 +35,7 @@ typedef enum zt_option {
     ZT_OPTION_SIZE,
     ZT_OPTION_SAMPLES,
     ZT_OPTION_THREADS,
+    ZT_OPTION_PRECISION,
     ZT_OPTION_PRESET,
     ZT_OPTION_SET,
     ZT_OPTION_QUIET,

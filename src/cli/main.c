@@ -113,11 +113,14 @@ static zt_status write_frames(zt_renderer *renderer, int64_t first, int64_t last
     return status;
 }
 
+static int64_t last_frame(const zt_options *options, const zt_film *film) {
+    return options->all_frames ? film->frame_count - 1 : options->last;
+}
+
 static zt_status render(const zt_options *options, const zt_animation *animation,
                         zt_report *report) {
     const zt_film *film = zt_animation_film(animation);
-    int64_t first = options->all_frames ? 0 : options->first;
-    int64_t last = options->all_frames ? film->frame_count - 1 : options->last;
+    int64_t first = options->first, last = last_frame(options, film);
     char *target = zt_options_target(options);
     if (!target) return ZT_EMEMORY;
     zt_render_settings settings = choose_settings(options, film);
@@ -138,6 +141,12 @@ static zt_status check(const zt_animation *animation, zt_report *report) {
     return zt_report_finish(report);
 }
 
+static zt_status explain_frames(const zt_options *options, const zt_animation *animation,
+                                zt_report *report) {
+    return zt_explain_precision(animation, options->first,
+                                last_frame(options, zt_animation_film(animation)), report);
+}
+
 /* What was asked for, of an animation that has been read. */
 static zt_status run(const zt_options *options, const zt_animation *animation,
                      zt_report *report) {
@@ -152,7 +161,8 @@ static zt_status run(const zt_options *options, const zt_animation *animation,
     case ZT_COMMAND_CHECK:
         return check(animation, report);
     case ZT_COMMAND_EXPLAIN:
-        return zt_explain(animation, options->question, report);
+        return options->question ? zt_explain(animation, options->question, report)
+                                 : explain_frames(options, animation, report);
     case ZT_COMMAND_CURVES:
         return zt_curves(options, animation, report);
     default:

@@ -192,17 +192,35 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         zt_report_say(report, ZT_ERROR, "%s needs %s", command->name, command->words);
         return false;
     }
-    if (sorted->word_count > expected && !command->more_words) {
-        zt_report_say(report, ZT_ERROR, "one word too many: %s", sorted->words[expected]);
+    if (sorted->word_count - expected > command->more_words) {
+        zt_report_say(report, ZT_ERROR, "one word too many: %s",
+                      sorted->words[expected + command->more_words]);
         return false;
     }
     options->file = sorted->words[1];
     if (options->command == ZT_COMMAND_FRAME)
         return read_frame(options, sorted->words[2], report);
+    if (options->command == ZT_COMMAND_EXPLAIN && sorted->words[2] && !options->all_frames) {
+        zt_report_say(report, ZT_ERROR, "explain takes --frames or a property, not both");
+        return false;
+    }
     if (options->command == ZT_COMMAND_EXPLAIN) options->question = sorted->words[2];
     options->properties = (const char *const *)sorted->words + 2;
     options->property_count = sorted->word_count - 2;
     return true;
+}
+
+static bool read_precision(zt_render_settings *settings, const char *text, zt_report *report) {
+    static const char *const names[] = {[ZT_PRECISION_AUTO] = "auto",
+                                        [ZT_PRECISION_SINGLE] = "single",
+                                        [ZT_PRECISION_DOUBLE] = "double"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        settings->precision = (zt_precision)i;
+        return true;
+    }
+    zt_report_say(report, ZT_ERROR, "--precision %s: must be single, double or auto", text);
+    return false;
 }
 
 /* Options that are the output's own, by the same names. */
@@ -226,13 +244,15 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
             return false;
         }
     const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
-               *samples = values[ZT_OPTION_SAMPLES], *threads = values[ZT_OPTION_THREADS];
+               *samples = values[ZT_OPTION_SAMPLES], *threads = values[ZT_OPTION_THREADS],
+               *precision = values[ZT_OPTION_PRECISION];
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
     pass_on(options, values);
     return (!frames || read_frames(options, frames, report)) &&
            (!size || read_size(settings, size, report)) &&
+           (!precision || read_precision(settings, precision, report)) &&
            (!samples ||
             read_count(&settings->samples, ZT_OPTION_SAMPLES, samples, SAMPLES_MAX, report)) &&
            (!threads ||

@@ -16,7 +16,7 @@ typedef struct zt_options {
     zt_command command;
     const char *file;              /* the description */
     const char *target;            /* NULL: the command's own */
-    const char *question;          /* of explain: "ball.center@37" */
+    const char *question;          /* of explain: "ball.center@37"; NULL: precisions */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;
     bool all_frames;                                  /* else first .. last, both included */

@@ -21,7 +21,8 @@ static zt_status check_settings(const zt_render_settings *s) {
 static zt_status open_parts(zt_renderer *r, int thread_count) {
     const zt_scene *rest = &r->animation->rest;
     ZT_TRY(zt_pool_open(&r->pool, thread_count));
-    ZT_TRY(zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, thread_count, r->listener));
+    ZT_TRY(
+        zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, thread_count, r->listener));
     return zt_render_work_push(&r->work, &r->run, thread_count);
 }
 
@@ -59,19 +60,24 @@ void zt_renderer_close(zt_renderer **slot) {
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 
+zt_status zt_renderer_prepare(zt_ready *ready, zt_scene *scene, zt_renderer *r, int64_t frame) {
+    zt_arena_reset(&r->frame);
+    ZT_TRY(zt_animation_freeze(scene, r->animation, zt_rate_time(r->format.rate, frame),
+                               &r->frame, r->listener));
+    return zt_tracer_prepare(ready, scene, r->precision,
+                             zt_lens_pixel(&scene->camera, r->format.height), r->meshes,
+                             &r->frame);
+}
+
 zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
                             const zt_watcher *watcher) {
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
-    zt_arena_reset(&r->frame);
     zt_scene scene;
     zt_ready ready;
     int64_t left_out_count;
-    ZT_TRY(zt_animation_freeze(&scene, r->animation, zt_rate_time(r->format.rate, frame),
-                               &r->frame, r->listener));
-    ZT_TRY(zt_tracer_prepare(&ready, &scene, r->precision,
-                             zt_lens_pixel(&scene.camera, image->height), r->meshes,
-                             &r->frame));
+    ZT_TRY(zt_renderer_prepare(&ready, &scene, r, frame));
+    zt_renderer_doubt(r, &ready, &scene, frame);
     zt_render_job job = {.scene = &ready,
                          .lens = zt_lens_prepare(&scene.camera, image->width, image->height),
                          .samples = r->samples,

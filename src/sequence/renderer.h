@@ -19,6 +19,15 @@ struct zt_renderer {
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
     zt_render_work *work;
+    bool told_precision; /* that single precision, which was asked for, is not enough */
 };
+
+/* The scene of a frame, and the same ready for its picture, in the frame's memory. */
+zt_status zt_renderer_prepare(zt_ready *ready, zt_scene *scene, zt_renderer *renderer,
+                              int64_t frame);
+
+/* Warns, the first time only, where single precision was asked for and is not enough. */
+void zt_renderer_doubt(zt_renderer *renderer, const zt_ready *ready, const zt_scene *scene,
+                       int64_t frame);
 
 #endif

@@ -26,15 +26,26 @@ enum { MIRRORS_MAX = 64 };
 enum { TWINS_MAX = 4096 };
 
 static zt_accuracy judge_one(const zt_extent *e, double pixel) {
-    zt_accuracy a = {.object = e->object, .other = -1, .wrong = WRONG * e->stretch * e->size};
-    if (!(e->size < LARGEST) || e->least < LEAST || !(e->stretch < 1 / WRONG))
-        a.reason = e->stretch < 1 / WRONG ? ZT_ACCURACY_RANGE : ZT_ACCURACY_STRETCH;
-    a.seen = SEEN * pixel * e->near;
-    if (a.reason == ZT_ACCURACY_FINE && a.wrong > a.seen)
+    zt_accuracy a = {.object = e->object,
+                     .other = -1,
+                     .wrong = WRONG * e->stretch * e->size,
+                     .seen = SEEN * pixel * e->near,
+                     .distance = e->near,
+                     .number = e->size};
+    if (!(e->stretch < 1 / WRONG)) {
+        a.reason = ZT_ACCURACY_STRETCH;
+        a.number = e->stretch;
+    } else if (!(e->size < LARGEST) || e->least < LEAST) {
+        a.reason = ZT_ACCURACY_RANGE;
+        a.number = e->least < LEAST ? e->least : e->size;
+    } else if (a.wrong > a.seen) {
         a.reason = e->near * 2 > e->size ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
-    if (a.reason == ZT_ACCURACY_FINE && a.wrong > SEEN_LAMP * e->lamp)
-        a = (zt_accuracy){ZT_ACCURACY_LAMP, e->object, e->lamp_light, a.wrong,
-                          SEEN_LAMP * e->lamp};
+    } else if (a.wrong > SEEN_LAMP * e->lamp) {
+        a.reason = ZT_ACCURACY_LAMP;
+        a.other = e->lamp_light;
+        a.seen = SEEN_LAMP * e->lamp;
+        a.distance = e->lamp;
+    }
     return a;
 }
 
@@ -110,6 +121,7 @@ zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_
     double gap;
     if (!find_twins(&one, &other, &gap, extents, count, SAME, WRONG))
         return (zt_accuracy){.object = -1, .other = -1};
-    return (zt_accuracy){ZT_ACCURACY_TWIN, one->object, other->object,
-                         WRONG * fmax(one->size, other->size), gap};
+    double size = fmax(one->size, other->size);
+    return (zt_accuracy){
+        ZT_ACCURACY_TWIN, one->object, other->object, WRONG * size, gap, gap, size};
 }

@@ -26,6 +26,9 @@ typedef struct zt_accuracy {
     int32_t object, other; /* indices in the scene; other: light or object, or -1 */
     double wrong;          /* how far off single precision may be, in the unit of space */
     double seen;           /* what may be seen of that, likewise */
+    double distance;       /* to the camera, lamp or other surface, likewise */
+    double number; /* the largest in its arithmetic; what is out of range; how many times
+                      more one way than another it is stretched */
 } zt_accuracy;
 
 /* One surface as it was made ready, in the space relative to the camera, in double precision.

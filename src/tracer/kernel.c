@@ -45,10 +45,10 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision
     *ready = (zt_ready){.precision = precision};
     if (precision != ZT_PRECISION_DOUBLE) {
         ZT_TRY(zt_prepare_single(&tracer, &extents, &count, scene, meshes, arena));
+        ready->accuracy = zt_accuracy_judge(extents, count, scene, pixel);
         if (precision == ZT_PRECISION_AUTO)
-            ready->accuracy = zt_accuracy_judge(extents, count, scene, pixel);
-        ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
-                                                                      : ZT_PRECISION_DOUBLE;
+            ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
+                                                                          : ZT_PRECISION_DOUBLE;
     }
     if (ready->precision == ZT_PRECISION_DOUBLE)
         ZT_TRY(zt_prepare_double(&tracer, &extents, &count, scene, meshes, arena));

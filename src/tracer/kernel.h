@@ -68,7 +68,8 @@ typedef struct zt_ready {
     const zt_tracer *tracer;
     const zt_kernel *kernel;
     zt_precision precision; /* not ZT_PRECISION_AUTO */
-    zt_accuracy accuracy;   /* where it was chosen, why */
+    zt_accuracy
+        accuracy; /* what asks for double; FINE where nobody asked (double was wanted) */
 } zt_ready;
 
 /* Prepares a scene for a picture whose pixels are `pixel` wide at distance 1. The kernel is the

@@ -1,0 +1,202 @@
+/* In which precision the frames of a film are rendered, and what is said of it. */
+#include <glob.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include <zoetrope/renderer.h>
+
+#include "told.h"
+
+static zt_animation *read_film(const char *path) {
+    zt_animation *animation;
+    assert_int_equal(zt_animation_read(&animation, path, NULL, 0, (zt_listener){0}), ZT_OK);
+    return animation;
+}
+
+/* A film of these lines after its head: a frame a second. */
+static zt_animation *film_of(const char *lines, int reflections) {
+    char path[] = "/tmp/zoetrope-precision-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    assert_true(dprintf(file,
+                        "zoetrope: 1\n"
+                        "film: { size: [96, 54], rate: 1, duration: 8, reflections: %d }\n"
+                        "materials:\n"
+                        "  clay: { color: [1, 1, 1] }\n"
+                        "  mirror: { color: [1, 1, 1], reflectivity: 0.9 }\n"
+                        "%s",
+                        reflections, lines) > 0);
+    close(file);
+    zt_animation *animation = read_film(path);
+    unlink(path);
+    return animation;
+}
+
+static zt_renderer *renderer_of(const zt_animation *animation, zt_precision precision,
+                                told *heard) {
+    zt_renderer *renderer;
+    zt_render_settings settings = {.precision = precision, .threads = 1};
+    zt_listener listener = heard ? told_to(heard) : (zt_listener){0};
+    assert_int_equal(zt_renderer_open(&renderer, animation, &settings, listener), ZT_OK);
+    return renderer;
+}
+
+static zt_frame_precision choice_of(zt_renderer *renderer, int64_t frame) {
+    zt_frame_precision choice;
+    assert_int_equal(zt_renderer_precision(&choice, renderer, frame), ZT_OK);
+    return choice;
+}
+
+/* A descent from orbit, until the eye stands on the ground. */
+static const char descent[] =
+    "camera: { position: { curve: linear, keys: { 0: [0, 2e6, 0], 7: [0, 2, 0] } },\n"
+    "          look_at: [0, 0, -1000] }\n"
+    "objects:\n"
+    "  - sphere: { name: ground, center: [0, -1e6, 0], radius: 1e6, material: clay }\n";
+
+/* Each frame has its own; the sentence names what asks for it, with its numbers. */
+static void by_frame(void **state) {
+    (void)state;
+    zt_animation *animation = film_of(descent, 4);
+    zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
+    zt_frame_precision far = choice_of(renderer, 0), less = choice_of(renderer, 1),
+                       near = choice_of(renderer, 7);
+    assert_int_equal(far.precision, ZT_PRECISION_SINGLE);
+    assert_string_equal(far.text,
+                        "single precision: its roundings stay below what can be seen");
+    assert_int_equal(near.precision, ZT_PRECISION_DOUBLE);
+    assert_string_equal(near.text,
+                        "double precision: the camera is 2 from ground, whose numbers reach "
+                        "2e+06; single precision would be off by 1.9, and 0.0034 can be seen");
+    assert_true(far.cause == less.cause);
+    assert_true(far.cause != near.cause);
+    zt_renderer_close(&renderer);
+    zt_animation_free(&animation);
+}
+
+/* Every other reason in its own words. */
+static void reasons(void **state) {
+    (void)state;
+    const struct {
+        const char *lines, *text;
+        int reflections;
+    } cases[] = {
+        {"camera: { position: [0, 0, 1e6], fov: 0.01 deg }\n"
+         "objects:\n"
+         "  - sphere: { name: moon, center: [0, 0, 0], radius: 10, material: clay }\n",
+         "double precision: moon is 1e+06 from the camera, in a view so narrow that 0.4 can be "
+         "seen; single precision would be off by 0.95",
+         4},
+        {"camera: { position: [0, 0, 10] }\n"
+         "lights:\n"
+         "  - ambient: { intensity: 1 }\n"
+         "  - point: { name: bulb, position: [0, 0, 0.0001], intensity: 1 }\n"
+         "objects:\n"
+         "  - plane: { name: wall, normal: [0, 0, 1], material: clay }\n",
+         "double precision: bulb is 0.0001 from wall, whose numbers reach 10; single precision "
+         "would be off by 9.5e-06",
+         4},
+        {"camera: { position: [0, 0, 10] }\n"
+         "objects:\n"
+         "  - plane: { name: wall, normal: [0, 0, 1], material: clay }\n"
+         "  - plane: { name: paper, normal: [0, 0, 1], distance: -1e-6, material: clay }\n",
+         "are 1e-06 apart and their numbers reach 10; single precision would be off by "
+         "9.5e-06",
+         4},
+        {"camera: { position: [0, 0, 10] }\n"
+         "objects:\n"
+         "  - sphere: { name: dust, center: [0, 0, 0], radius: 1e-18, material: clay }\n",
+         "double precision: of dust a number is 1e-18, whose square single precision cannot "
+         "hold",
+         4},
+        {"camera: { position: [0, 0, 10] }\n"
+         "objects:\n"
+         "  - group:\n"
+         "      scale: [1, 1, 1e-9]\n"
+         "      objects:\n"
+         "        - sphere: { name: coin, center: [0, 0, 0], radius: 1, material: clay }\n",
+         "double precision: coin is stretched 1e+09 times more one way than another", 4},
+        {"camera: { position: [0, 0, 10] }\n"
+         "objects:\n"
+         "  - plane: { name: wall, normal: [0, 0, 1], material: mirror }\n",
+         "double precision: rays may meet 100 mirrors one after the other", 100},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        zt_animation *animation = film_of(cases[i].lines, cases[i].reflections);
+        zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
+        zt_frame_precision choice = choice_of(renderer, 0);
+        if (!strstr(choice.text, cases[i].text))
+            fail_msg("\"%s\" is not in: %s", cases[i].text, choice.text);
+        zt_renderer_close(&renderer);
+        zt_animation_free(&animation);
+    }
+}
+
+/* A warning, once, of the first frame for which single precision is not enough; none where
+ * nobody insists on it. */
+static void warned_once(void **state) {
+    (void)state;
+    zt_animation *animation = film_of(descent, 4);
+    for (zt_precision p = ZT_PRECISION_AUTO; p <= ZT_PRECISION_DOUBLE; p++) {
+        static told heard;
+        heard = (told){0};
+        zt_renderer *renderer = renderer_of(animation, p, &heard);
+        zt_image *image;
+        assert_int_equal(zt_image_create(&image, 96, 54), ZT_OK);
+        for (int64_t frame = 0; frame < 9; frame++)
+            assert_int_equal(zt_renderer_frame(renderer, frame, image, NULL), ZT_OK);
+        bool single = p == ZT_PRECISION_SINGLE;
+        assert_int_equal(heard.warning_count, single);
+        assert_int_equal(heard.error_count, 0);
+        if (single)
+            assert_non_null(strstr(heard.lines, "warning: frame 7 asks for double precision: "
+                                                "the camera is 2 from ground"));
+        const char *texts[] = {[ZT_PRECISION_AUTO] = "double precision: the camera",
+                               [ZT_PRECISION_SINGLE] =
+                                   "single precision, as asked for, though the camera",
+                               [ZT_PRECISION_DOUBLE] = "double precision, as asked for"};
+        assert_non_null(strstr(choice_of(renderer, 7).text, texts[p]));
+        zt_image_free(&image);
+        zt_renderer_close(&renderer);
+    }
+    zt_animation_free(&animation);
+}
+
+/* The films that the project shows need nothing but single precision. */
+static void ordinary_films(void **state) {
+    (void)state;
+    glob_t films;
+    assert_int_equal(glob(ZT_TEST_SOURCE_DIR "/animations/*.yaml", 0, NULL, &films), 0);
+    assert_true(films.gl_pathc > 5);
+    for (size_t i = 0; i < films.gl_pathc; i++) {
+        zt_animation *animation = read_film(films.gl_pathv[i]);
+        zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
+        int64_t count = zt_animation_film(animation)->frame_count;
+        for (int64_t frame = 0; frame < count; frame += 5) {
+            zt_frame_precision choice = choice_of(renderer, frame);
+            if (choice.precision != ZT_PRECISION_SINGLE)
+                fail_msg("%s, frame %d: %s", films.gl_pathv[i], (int)frame, choice.text);
+        }
+        zt_renderer_close(&renderer);
+        zt_animation_free(&animation);
+    }
+    globfree(&films);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(by_frame),
+        cmocka_unit_test(reasons),
+        cmocka_unit_test(warned_once),
+        cmocka_unit_test(ordinary_films),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
