@@ -33,27 +33,23 @@ static inline int32_t leaving(int32_t source, int32_t index) {
         }                                                                                      \
     }                                                                                          \
     static void kind##_any(zt_batch *restrict rays, const zt_origins *restrict from,           \
-                           const zt_primitive *p, int32_t index, int count, real tie) {        \
+                           const zt_primitive *p, int32_t index, int first, int end) {         \
         const zt_primitive own = *p;                                                           \
-        (void)tie;                                                                             \
-        WIDE_LOOP for (int i = 0; i < count; i++) {                                            \
+        WIDE_LOOP for (int i = first; i < end; i++) {                                          \
             real t = DISTANCE(kind, i), near = from->near[i];                                  \
             int32_t hit = rays->hit[i];                                                        \
             rays->hit[i] = ((t > near) & (t * (1 + TIE) + near < rays->t[i])) ? 0 : hit;       \
         }                                                                                      \
     }                                                                                          \
     static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,         \
-                             const zt_primitive *p, int32_t index, int first, real tie,        \
-                             bool any) {                                                       \
+                             const zt_primitive *p, int32_t index, int first, real tie) {      \
         const zt_primitive own = *p;                                                           \
-        const real before = any ? TIE : tie, after = any ? TIE : -tie;                         \
+        const real more = 1 + tie, less = 1 - tie, share = tie / TIE;                          \
         WIDE_LOOP for (int i = first; i < first + ZT_BATCH_LANES; i++) {                       \
-            real t = DISTANCE(kind, i), nearest = rays->t[i], near = from->near[i];            \
-            int32_t hit = rays->hit[i];                                                        \
-            real room = (t + near / TIE) * (index > hit ? before : after);                     \
-            bool nearer =                                                                      \
-                ((t + room < nearest) | ((room == 0) & (t == nearest) & (index < hit))) &      \
-                (t > (any ? near : 0));                                                        \
+            real t = DISTANCE(kind, i), nearest = rays->t[i], near = share * from->near[i];    \
+            int32_t hit = rays->hit[i], later = index > hit;                                   \
+            int32_t before = t * more + near < nearest, no_later = t * less - near <= nearest; \
+            int32_t nearer = (later & before) | ((1 - later) & no_later);                      \
             rays->t[i] = nearer ? t : nearest;                                                 \
             rays->hit[i] = nearer ? index : hit;                                               \
         }                                                                                      \
@@ -82,16 +78,22 @@ DEFINE_LOOPS(torus)
 typedef void loop(zt_batch *restrict rays, const zt_origins *restrict from,
                   const zt_primitive *p, int32_t index, int count, real tie);
 static loop *const nearest_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(nearest);
-static loop *const any_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(any);
+
+typedef void any_loop(zt_batch *restrict rays, const zt_origins *restrict from,
+                      const zt_primitive *p, int32_t index, int first, int end);
+static any_loop *const any_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(any);
 
 typedef void lanes_loop(zt_batch *restrict rays, const zt_origins *restrict from,
-                        const zt_primitive *p, int32_t index, int first, real tie, bool any);
+                        const zt_primitive *p, int32_t index, int first, real tie);
 static lanes_loop *const lanes_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(lanes);
 
 void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
                                    int first, bool any) {
     const zt_primitive *p = &tracer->primitives[index];
-    lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie, any);
+    if (any)
+        any_loops[p->kind](rays, rays->from, p, index, first, first + ZT_BATCH_LANES);
+    else
+        lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie);
 }
 
 /* Whether a primitive can be met by a ray of a bundle. What all rays leave, and none inwards,
@@ -137,7 +139,7 @@ void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
         if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;
-        any_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
+        any_loops[p->kind](rays, rays->from, p, index, 0, padded);
     }
     if (tracer->placed_count > 0 || tracer->crowd)
         ZT_KERNEL_NAME(zt_search_any)(rays, bundle, tracer);

@@ -255,7 +255,7 @@ typedef struct crowd_search {
 } crowd_search;
 
 /* Some rays against one primitive of a crowd. Others of their group are asked as well, since it
- * costs nothing. Shadow rays are asked for their nearest hit. */
+ * costs nothing. */
 static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     crowd_search *c = user;
     zt_batch *rays = c->rays;
@@ -269,10 +269,12 @@ static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     } else {
         ZT_KERNEL_NAME(zt_meet_lanes)(rays, c->tracer, index, first, c->any);
     }
-    for (int i = first; i < first + ZT_BATCH_LANES; i++) {
-        bool done = c->any & (rays->hit[i] >= 0);
-        c->packed.far[i] = done ? -1 : (float)(rays->t[i] - c->begin[i]) * LOOK_FURTHER;
-    }
+    if (c->any)
+        for (int i = first; i < first + ZT_BATCH_LANES; i++)
+            c->packed.far[i] = rays->hit[i] >= 0 ? -1 : c->packed.far[i];
+    else
+        for (int i = first; i < first + ZT_BATCH_LANES; i++)
+            c->packed.far[i] = (float)(rays->t[i] - c->begin[i]) * LOOK_FURTHER;
 }
 
 /* Where a ray enters a box, or 0 where it begins within or never does. */
