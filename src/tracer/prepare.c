@@ -43,7 +43,7 @@ static void make_pattern(zt_weave *weave, const zt_material *material, const zt_
     weave->other = to_real3(material->other_color);
 }
 
-/* Everything that a scene's objects become; room for as many of each as there are objects. */
+/* Everything that a scene's objects become; room for as many of each as there may be. */
 typedef struct made {
     zt_primitive *primitives;
     zt_surface *surfaces;
@@ -178,6 +178,22 @@ static zt_status sort_primitives(zt_tracer *tracer, zt_meshes *meshes, zt_arena 
     return zt_meshes_crowd(&tracer->crowd, meshes, boxes, crowd_count);
 }
 
+static size_t count_meshes(const zt_scene *scene) {
+    size_t count = 0;
+    for (int32_t i = 0; i < scene->object_count; i++)
+        count += scene->objects[i].shape == ZT_SHAPE_MESH;
+    return count;
+}
+
+static size_t count_patterns(const zt_scene *scene) {
+    size_t count = 0;
+    for (int32_t i = 0; i < scene->object_count; i++) {
+        int32_t material = scene->objects[i].material;
+        count += material >= 0 && scene->materials[material].pattern != ZT_PATTERN_NONE;
+    }
+    return count;
+}
+
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t *extent_count,
                                    const zt_scene *scene, zt_meshes *meshes, zt_arena *arena) {
     size_t count = (size_t)scene->object_count;
@@ -185,8 +201,8 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
     made all = {.primitives = ZT_PUSH(arena, zt_primitive, count),
                 .surfaces = ZT_PUSH(arena, zt_surface, count),
                 .extents = ZT_PUSH(arena, zt_extent, count),
-                .placed = ZT_PUSH(arena, zt_placed_mesh, count),
-                .weaves = ZT_PUSH(arena, zt_weave, count)};
+                .placed = ZT_PUSH(arena, zt_placed_mesh, count_meshes(scene)),
+                .weaves = ZT_PUSH(arena, zt_weave, count_patterns(scene))};
     xform *worlds = ZT_PUSH(arena, xform, count);
     if (!tracer || !all.primitives || !all.surfaces || !all.extents || !all.placed ||
         !all.weaves || !worlds)
