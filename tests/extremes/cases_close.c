@@ -87,11 +87,11 @@ static void make_coincident(stage *s, draw *d, double extreme) {
 }
 
 const extreme_case cases_close[] = {
-    {"tangent", make_tangent, 0, 24, 64, 1, 0},
+    {"tangent", make_tangent, 0, 16, 64, 1, 0},
     {"origin inside", make_origins, -1, 12, 64, 1, 0},
     {"origin on", make_origins, 0, 12, 64, 1, 0},
     {"origin 1e-9 off", make_origins, 1e-9, 12, 64, 1, 0},
-    {"shells 1e-7", make_shells, 1e-7, 12, 64, 1, CASE_DOUBLE},
+    {"shells 1e-7", make_shells, 1e-7, 6, 64, 1, CASE_DOUBLE},
     {"flat at 1e-8 rad", make_flat, 1e-8, 24, 64, 1, 0},
     {"coincident", make_coincident, 0, 12, 64, 1, CASE_STRICT},
     {0},

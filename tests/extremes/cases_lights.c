@@ -72,6 +72,6 @@ const extreme_case cases_lights[] = {
     {"lights on surfaces", make_lights, 0, 12, 64, 1, 0},
     {"lights inside", make_lights, -1, 12, 64, 1, 0},
     {"smooth terminator", make_terminator, 0, 8, 128, 0, 0},
-    {"mirrors 1000 deep", make_mirrors, 0, 8, 2, 1000, 0},
+    {"mirrors 1000 deep", make_mirrors, 0, 4, 2, 1000, 0},
     {0},
 };

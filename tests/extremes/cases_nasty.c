@@ -58,7 +58,7 @@ static void make_nasty(stage *s, draw *d, double most) {
 }
 
 const extreme_case cases_nasty[] = {
-    {"nasty", make_nasty, 1e4, 400, 10, 1, 0},
+    {"nasty", make_nasty, 1e4, 300, 10, 1, 0},
     {0},
 };
 

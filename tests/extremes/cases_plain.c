@@ -34,16 +34,16 @@ static void make_mesh(stage *s, draw *d, double extreme) {
 }
 
 const extreme_case cases_plain[] = {
-    {"plane", make_shape, ZT_SHAPE_PLANE, 8, 256, 1, 0},
-    {"sphere", make_shape, ZT_SHAPE_SPHERE, 8, 256, 1, 0},
-    {"ellipsoid", make_ellipsoid, 0, 8, 256, 1, 0},
-    {"triangle", make_shape, ZT_SHAPE_TRIANGLE, 8, 256, 1, 0},
-    {"disk", make_shape, ZT_SHAPE_DISK, 8, 256, 1, 0},
-    {"box", make_shape, ZT_SHAPE_BOX, 8, 256, 1, 0},
-    {"cylinder", make_shape, ZT_SHAPE_CYLINDER, 8, 256, 1, 0},
-    {"cone", make_shape, ZT_SHAPE_CONE, 8, 256, 1, 0},
-    {"torus", make_shape, ZT_SHAPE_TORUS, 8, 256, 2, 0},
-    {"capsule", make_shape, ZT_SHAPE_CAPSULE, 8, 256, 1, 0},
-    {"mesh", make_mesh, 0, 4, 256, 1, CASE_CLOSED},
+    {"plane", make_shape, ZT_SHAPE_PLANE, 4, 256, 1, 0},
+    {"sphere", make_shape, ZT_SHAPE_SPHERE, 4, 256, 1, 0},
+    {"ellipsoid", make_ellipsoid, 0, 4, 256, 1, 0},
+    {"triangle", make_shape, ZT_SHAPE_TRIANGLE, 4, 256, 1, 0},
+    {"disk", make_shape, ZT_SHAPE_DISK, 4, 256, 1, 0},
+    {"box", make_shape, ZT_SHAPE_BOX, 4, 256, 1, 0},
+    {"cylinder", make_shape, ZT_SHAPE_CYLINDER, 4, 256, 1, 0},
+    {"cone", make_shape, ZT_SHAPE_CONE, 4, 256, 1, 0},
+    {"torus", make_shape, ZT_SHAPE_TORUS, 4, 256, 2, 0},
+    {"capsule", make_shape, ZT_SHAPE_CAPSULE, 4, 256, 1, 0},
+    {"mesh", make_mesh, 0, 3, 256, 1, CASE_CLOSED},
     {0},
 };

@@ -57,8 +57,10 @@ static void make_singular(stage *s, draw *d, double share) {
 const extreme_case cases_transforms[] = {
     {"scaled 1e6", make_scaled, 1e6, 16, 64, 1, 0},
     {"stretched 1e2", make_stretched, 1e2, 16, 64, 1, 0},
+    {"stretched 1e4", make_stretched, 1e4, 16, 64, 1, 0},
     {"stretched 1e6", make_stretched, 1e6, 16, 64, 1, 0},
     {"sheared 1e2", make_sheared, 1e2, 16, 64, 1, 0},
+    {"sheared 1e4", make_sheared, 1e4, 16, 64, 1, 0},
     {"sheared 1e6", make_sheared, 1e6, 16, 64, 1, 0},
     {"flattened 1e-3", make_singular, 1e-3, 12, 64, 1, 0},
     {"flattened 1e-6", make_singular, 1e-6, 12, 64, 1, 0},

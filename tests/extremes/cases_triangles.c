@@ -127,7 +127,7 @@ const extreme_case cases_triangles[] = {
     {"edges of 1e-20", make_scaled, 1e-20, 8, 64, 1, 0},
     {"edges of 1e20", make_scaled, 1e20, 8, 64, 1, 0},
     {"shared edge", make_edge, 0, 16, 64, 1, 0},
-    {"fan of 1000", make_fan, 1000, 2, 128, 1, CASE_CLOSED},
+    {"fan of 1000", make_fan, 1000, 1, 128, 1, CASE_CLOSED},
     {"closed mesh", make_closed, 1, 16, 64, 2, CASE_CLOSED},
     {"closed, stretched", make_closed, 1e3, 16, 64, 2, CASE_CLOSED},
     {0},

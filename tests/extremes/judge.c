@@ -12,12 +12,12 @@ static void worst(double *kept, real error) {
 void judge_count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
                  ref_hit expected, const probe *a) {
     if (++*counter > 3 || !j->verbose) return;
-    printf("  %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
+    printf("  %s %d, %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
            "object %d part %d t %.17g, reference object %d part %d t %.17g, of shape %d\n",
-           j->name, what, (double)ray->o.x, (double)ray->o.y, (double)ray->o.z,
-           (double)ray->d.x, (double)ray->d.y, (double)ray->d.z, ray->source_object,
-           ray->source_part, a->object, a->part, a->t, expected.object, expected.part,
-           (double)expected.t,
+           j->name, j->scene, j->how, what, (double)ray->o.x, (double)ray->o.y,
+           (double)ray->o.z, (double)ray->d.x, (double)ray->d.y, (double)ray->d.z,
+           ray->source_object, ray->source_part, a->object, a->part, a->t, expected.object,
+           expected.part, (double)expected.t,
            (int)j->ref->primitives[a->object < 0 ? expected.object : a->object].shape);
 }
 
@@ -103,6 +103,9 @@ static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *
     if (error > j->tolerance && expected.object == a->object)
         error = real_min(error,
                          normal_error(j, p, a, scale, real3_along(ray->o, expected.t, ray->d)));
+    int64_t none = 0; /* the worst says how many matter */
+    if (error > j->tolerance && (double)error > j->tally->normal)
+        judge_count(j, &none, "normal", ray, expected, a);
     worst(&j->tally->normal, error);
 }
 

@@ -34,7 +34,9 @@ typedef struct judge {
     bool closed;      /* what is missed is a leak */
     bool lights;      /* whether to look at shadows */
     bool verbose;     /* print what is wrong */
-    const char *name;
+    const char *name; /* of the case, */
+    int scene;        /* the scene of it, */
+    const char *how;  /* and the precision */
     tally *tally;
 } judge;
 

@@ -89,7 +89,8 @@ static void run_mesh(tally *t, probe_tracer *tracer, const closed_mesh *m, draw 
                    probes[i].t);
 }
 
-bool run_leaks(run_result *result, int64_t rays, bool verbose) {
+bool run_leaks(run_result *result, int64_t rays, run_how how) {
+    bool verbose = how == RUN_TOLD;
     static closed_mesh m;
     *result = (run_result){0};
     int per_mesh = rays < 20 * RAYS_A_MESH ? (int)(rays / 20) : RAYS_A_MESH;

@@ -8,6 +8,6 @@
 extern const extreme_case leaks_case;
 
 /* False where the tracer could not be opened. */
-bool run_leaks(run_result *result, int64_t rays, bool verbose);
+bool run_leaks(run_result *result, int64_t rays, run_how how);
 
 #endif

@@ -1,9 +1,9 @@
 /* Holds the tracer against the reference where numbers are extreme, and prints how exact and
  * how fast it was:
- *     extremes [--case NAME] [--scenes N] [--csv FILE] [--verbose] [--digest]
- * --scenes: how many scenes of each case instead of the few of the short run. --digest prints a
- * checksum of all answers instead, for comparisons between kernels. Exits with 1 where what
- * must hold does not. */
+ *     extremes [--case NAME] [--scenes N] [--rays N] [--csv FILE] [--verbose] [--digest]
+ * --scenes: how many scenes of each case instead of the few of the short run; --rays: how many
+ * at edges and corners of closed meshes. --digest prints a checksum of all answers instead, for
+ * comparisons between kernels. Exits with 1 where what must hold does not. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,14 +42,15 @@ static bool read_options(options *o, int count, char **words) {
 /* One case; false where the tracer could not be opened. */
 static bool run(int *failures, FILE *csv, const extreme_case *c, const options *o) {
     static run_result result;
+    run_how how = o->digest ? RUN_ANSWERS : o->verbose ? RUN_TOLD : RUN_JUDGED;
     bool ok;
     if (o->only && strcmp(o->only, c->name) != 0) return true;
     if (c == &leaks_case)
-        ok = run_leaks(&result, o->rays, o->verbose);
+        ok = run_leaks(&result, o->rays, how);
     else if (c == &pictures_case)
-        ok = run_pictures(&result, o->scenes > 0 ? o->scenes : 1, o->verbose);
+        ok = run_pictures(&result, o->scenes > 0 ? o->scenes : 1, how);
     else
-        ok = run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, o->verbose);
+        ok = run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, how);
     if (!ok) return false;
     if (!o->digest)
         *failures += table_case(csv, c, &result);

@@ -16,7 +16,7 @@ typedef struct picture {
     ref_scene ref;
     float pixels[4 * PIXELS], again[4 * PIXELS];
     const char *name;
-    bool verbose;
+    run_how how;
 } picture;
 
 /* Moves the eye to where a ray of the case begins, looking along it; lights and mirrors become
@@ -97,8 +97,8 @@ static void check(picture *p, tally *t, bool single, int64_t left_out) {
         t->hits += pixel[0] + pixel[1] + pixel[2] > 0;
         t->not_finite += !isfinite(pixel[0] + pixel[1] + pixel[2]);
         t->false_hits += memcmp(pixel, &p->again[4 * i], 4 * sizeof *pixel) != 0;
-        if (smooth || single || is_right(p, i)) continue;
-        if (++t->wrong > 3 || !p->verbose) continue;
+        if (smooth || single || p->how == RUN_ANSWERS || is_right(p, i)) continue;
+        if (++t->wrong > 3 || p->how != RUN_TOLD) continue;
         ref_ray ray = pixel_ray(p, i, 0, 0);
         real light[3];
         ref_trace(light, &p->ref, &ray);
@@ -129,11 +129,11 @@ static bool render(picture *p, run_result *result, int precision) {
     return true;
 }
 
-bool run_pictures(run_result *result, int count, bool verbose) {
+bool run_pictures(run_result *result, int count, run_how how) {
     static picture p;
     bool ok = true;
     *result = (run_result){0};
-    p.verbose = verbose;
+    p.how = how;
     for (int list = 0; cases_all[list]; list++)
         for (const extreme_case *c = cases_all[list]; c->name; c++)
             for (int i = 0; i < count && ok; i++) {

@@ -11,6 +11,6 @@
 extern const extreme_case pictures_case;
 
 /* One picture of each of `count` scenes of each case. False where the tracer fails. */
-bool run_pictures(run_result *result, int count, bool verbose);
+bool run_pictures(run_result *result, int count, run_how how);
 
 #endif

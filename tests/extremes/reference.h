@@ -32,6 +32,7 @@ typedef struct ref_primitive {
     real3 rows[3];
     real3 center;
     real a, b;
+    real askew; /* the condition number of its groups' transform, 1 where that is a rotation */
     affine place; /* from its own space to the world, */
     real3 middle; /* and a ball around it there */
     real round;

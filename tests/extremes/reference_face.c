@@ -44,9 +44,10 @@ static ref_face to_world(const ref_primitive *p, const own_face *f) {
     real distance = real_abs(f->value) / length;
     real ends = real3_length(turn_back(p, f->beyond_grad));
     if (f->beyond > 0 && ends > 0) distance = real_max(distance, f->beyond / ends);
-    for (int i = 0; i < 3; i++) rows += real3_dot(p->rows[i], p->rows[i]);
+    const real by[3] = {f->gradient.x, f->gradient.y, f->gradient.z};
+    for (int i = 0; i < 3; i++) rows += real_abs(by[i]) * real3_length(p->rows[i]);
     return (ref_face){normal, distance, world_bend(p, f, normal, length),
-                      REAL(sqrt)(rows) * real3_length(f->gradient) / length};
+                      p->askew * rows / length};
 }
 
 /* A ball around the own space's point (0, 0, z). */

@@ -14,6 +14,10 @@ static void find_worlds(affine *worlds, const zt_scene *scene) {
     }
 }
 
+static real squares(const real3 v[3]) {
+    return real3_dot(v[0], v[0]) + real3_dot(v[1], v[1]) + real3_dot(v[2], v[2]);
+}
+
 /* Makes `own`, which takes the primitive's own space to its group's, its place in the world;
  * the ball around it is that of all points at most `reach` from `middle` in its own space. */
 static void place(ref_primitive *p, const affine *world, const affine *own, real3 middle,
@@ -22,12 +26,13 @@ static void place(ref_primitive *p, const affine *world, const affine *own, real
     p->present = affine_inverse_rows(p->rows, &whole);
     p->center = whole.shift;
     p->place = whole;
+    real3 back[3];
+    if (affine_inverse_rows(back, world))
+        p->askew =
+            REAL(sqrt)(squares(back) * squares((real3[]){world->x, world->y, world->z})) / 3;
     p->middle = middle;
     p->round = reach;
-    real3 columns[3] = {whole.x, whole.y, whole.z};
-    real stretch = 0;
-    for (int i = 0; i < 3; i++) stretch += real3_dot(columns[i], columns[i]);
-    real size = REAL(sqrt)(stretch) * reach;
+    real size = REAL(sqrt)(squares((real3[]){whole.x, whole.y, whole.z})) * reach;
     p->around = real3_round(affine_point(&whole, middle));
     p->reach = (double)size * 1.0001;
     p->extent = real3_length(affine_point(&whole, middle)) + size;

@@ -34,7 +34,8 @@ static uint64_t digest(uint64_t before, const probe *p) {
 }
 
 /* The rays of the stage, and of those that follow from their answers. */
-static void follow(running *r, probe_tracer *tracer, judge *j, uint64_t *sum) {
+static void follow(running *r, probe_tracer *tracer, const judge *j, run_how how,
+                   uint64_t *sum) {
     int count = r->stage.ray_count;
     for (int i = 0; i < count; i++) {
         r->probes[i] = (probe){
@@ -49,9 +50,11 @@ static void follow(running *r, probe_tracer *tracer, judge *j, uint64_t *sum) {
         int next = 0;
         for (int i = 0; i < count; i++) {
             const probe *a = &r->probes[i];
-            ref_hit expected = bounce ? ref_nearest(&r->ref, &r->rays[i]) : r->expected[i];
             *sum = digest(*sum, a);
-            judge_probe(j, &r->rays[i], expected, a);
+            if (how != RUN_ANSWERS) {
+                ref_hit expected = bounce ? ref_nearest(&r->ref, &r->rays[i]) : r->expected[i];
+                judge_probe(j, &r->rays[i], expected, a);
+            }
             if (a->object < 0 || !isfinite(vec3_max_abs(a->next_direction))) continue;
             r->rays[next] = (ref_ray){real3_of(a->next_origin), real3_of(a->next_direction),
                                       a->object, a->part};
@@ -61,14 +64,14 @@ static void follow(running *r, probe_tracer *tracer, judge *j, uint64_t *sum) {
     }
 }
 
-static bool run_scene(running *r, run_result *result, int number, bool verbose) {
+static bool run_scene(running *r, run_result *result, int number, run_how how) {
     const extreme_case *c = r->c;
     draw d = {key_of(c->name, number), 0};
     stage_begin(&r->stage, c->rays);
     c->make(&r->stage, &d, c->extreme);
     zt_arena_reset(&r->arena);
     if (!ref_prepare(&r->ref, &r->stage.s.scene, &r->arena)) return false;
-    for (int i = 0; i < r->stage.ray_count; i++) {
+    for (int i = 0; how != RUN_ANSWERS && i < r->stage.ray_count; i++) {
         ref_ray ray = {real3_of(r->stage.origins[i]), real3_of(r->stage.directions[i]), -1, -1};
         r->expected[i] = ref_nearest(&r->ref, &ray);
     }
@@ -82,22 +85,24 @@ static bool run_scene(running *r, run_result *result, int number, bool verbose) 
                    .strict = c->flags & CASE_STRICT,
                    .closed = c->flags & CASE_CLOSED,
                    .lights = true,
-                   .verbose = verbose,
+                   .verbose = how == RUN_TOLD,
                    .name = c->name,
+                   .scene = number,
+                   .how = (const char *[]){"single", "double", "auto"}[i],
                    .tally = &result->tallies[i]};
-        follow(r, tracer, &j, &result->digest[i]);
+        follow(r, tracer, &j, how, &result->digest[i]);
         probe_close(&tracer);
     }
     result->scenes++;
     return true;
 }
 
-bool run_case(run_result *result, const extreme_case *c, int first, int count, bool verbose) {
+bool run_case(run_result *result, const extreme_case *c, int first, int count, run_how how) {
     static running r; /* large, and one at a time */
     r.c = c;
     bool ok = true;
     *result = (run_result){0};
-    for (int i = first; ok && i < first + count; i++) ok = run_scene(&r, result, i, verbose);
+    for (int i = first; ok && i < first + count; i++) ok = run_scene(&r, result, i, how);
     zt_arena_free(&r.arena);
     zt_arena_free(&r.stage.arena);
     return ok;

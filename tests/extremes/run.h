@@ -10,6 +10,12 @@ static inline double run_tolerance(probe_precision chosen) {
     return chosen == PROBE_SINGLE ? 1e-6 : 1e-12;
 }
 
+typedef enum run_how {
+    RUN_JUDGED,
+    RUN_TOLD,   /* the first mistakes of each kind are printed as well */
+    RUN_ANSWERS /* not judged: for the digest alone */
+} run_how;
+
 typedef struct run_result {
     tally tallies[PROBE_PRECISIONS];
     int64_t chose_single; /* scenes for which auto did */
@@ -19,6 +25,6 @@ typedef struct run_result {
 
 /* Scenes from number `first` on, `count` of them. False where the tracer could not be opened.
  */
-bool run_case(run_result *result, const extreme_case *c, int first, int count, bool verbose);
+bool run_case(run_result *result, const extreme_case *c, int first, int count, run_how how);
 
 #endif

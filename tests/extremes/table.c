@@ -1,7 +1,5 @@
 #include "table.h"
 
-#include <string.h>
-
 static const char *const precisions[] = {"single", "double", "auto"};
 
 void table_begin(FILE *csv) {
@@ -44,14 +42,14 @@ int table_case(FILE *csv, const extreme_case *c, const run_result *r) {
         const char *mark = "";
         if (i == PROBE_AUTO && (c->flags & CASE_DOUBLE) && r->chose_single > 0) {
             holds = false;
-            mark = "  chose single";
+            mark = "FAILS: chose single";
         }
         const limit *known = limit_find(c->name, (probe_precision)i);
-        if (!holds) mark = known ? "  (limit)" : *mark ? mark : "  FAILS";
+        if (!holds) mark = known ? known->why : *mark ? mark : "FAILS";
         failures += !holds && !known;
         printf("%-19s %-6s %8lld %6lld | %8.1e %8.1e %8.1e %8.1e %8.1e | %8.1e %8.1e %8.1e | "
                "%5lld %5lld "
-               "%5lld %5lld %5lld %6lld %6lld | %7.0f%s\n",
+               "%5lld %5lld %5lld %6lld %6lld | %7.0f  %s\n",
                i ? "" : c->name, precisions[i], (long long)t->rays, (long long)t->hits, t->hit,
                t->point, t->lift, t->normal, t->mirror, t->forward, t->relative, t->condition,
                (long long)t->wrong, (long long)t->missed, (long long)t->false_hits,
@@ -60,12 +58,4 @@ int table_case(FILE *csv, const extreme_case *c, const run_result *r) {
         if (csv) csv_line(csv, c, r, i, holds);
     }
     return failures;
-}
-
-const limit limits[] = {{0}};
-
-const limit *limit_find(const char *name, probe_precision precision) {
-    for (const limit *l = limits; l->name; l++)
-        if (strcmp(l->name, name) == 0 && l->precision == precision) return l;
-    return NULL;
 }
