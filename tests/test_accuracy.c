@@ -143,6 +143,42 @@ static void twins(void **state) {
         }
 }
 
+/* What stands on the floor, or nearly. Of a mesh only the bounds are known: nothing may be
+ * there.
+ */
+static void standing(void **state) {
+    (void)state;
+    static const float positions[] = {0, 0, 0, 1, 2, 0, 0, 2, 1, 0};
+    static const uint32_t triangle[] = {0, 1, 2};
+    static const zt_mesh mesh = {.positions = positions,
+                                 .triangles = triangle,
+                                 .vertex_count = 3,
+                                 .triangle_count = 1,
+                                 .high = {1, 2, 1}};
+    const double lifts[] = {0, 1e-6, 1e-3};
+    for (int i = 0; i < 3; i++)
+        for (int kind = 0; kind < 3; kind++) {
+            double low = lifts[i] - 1;
+            begin();
+            scene_plane(&s, (vec3){0, 1, 0}, -1, 0);
+            if (kind == 0) {
+                zt_object *o = scene_object(&s, ZT_SHAPE_BOX, 0);
+                o->box = (zt_block){{0, low + .5, -5}, {2, 1, 2}, {1, 0, 0, 0}};
+            } else if (kind == 1) {
+                zt_object *o = scene_object(&s, ZT_SHAPE_CYLINDER, 0);
+                o->tube = (zt_tube){{0, low, -5}, {0, low + 1, -5}, 1, 0};
+            } else {
+                zt_object *o = scene_object(&s, ZT_SHAPE_MESH, 0);
+                o->mesh = 0;
+                o->placement.position = (vec3){0, low, -5};
+                s.scene.meshes = &mesh;
+                s.scene.mesh_count = 1;
+            }
+            bool twin = i == 1 && kind < 2;
+            assert_int_equal(judged().reason, twin ? ZT_ACCURACY_TWIN : ZT_ACCURACY_FINE);
+        }
+}
+
 static void out_of_range(void **state) {
     (void)state;
     const double distances[] = {1e14, 1e16}, radii[] = {1e-14, 1e-16};
@@ -250,6 +286,7 @@ int main(void) {
         cmocka_unit_test(in_a_narrow_view),
         cmocka_unit_test(near_a_lamp),
         cmocka_unit_test(twins),
+        cmocka_unit_test(standing),
         cmocka_unit_test(out_of_range),
         cmocka_unit_test(stretched),
         cmocka_unit_test(mirrors),

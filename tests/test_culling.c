@@ -160,7 +160,7 @@ static void make_scene(test_scene *s, uint64_t *seed, int things) {
     /* Shells, as near to each other as things may be that are not the same. */
     vec3 at = vec3_scale(test_direction(seed), 4);
     if (things % 4 == 0) at = vec3_add(s->scene.camera.position, vec3_scale(at, .1));
-    double gap = 2 * 0x1p-20 * (vec3_length(s->scene.camera.position) + 5);
+    double gap = 8 * 0x1p-20 * (vec3_length(s->scene.camera.position) + 5);
     for (int i = 0; i < things / 3; i++) scene_sphere(s, at, .5 + i * gap, 0);
     for (int i = 0; i < 3; i++)
         scene_point_light(s, vec3_scale(test_direction(seed), test_between(seed, 0, 9)), 1);

@@ -464,13 +464,56 @@ static void test_ties(void **state) {
     zt_meshes_close(&meshes);
 }
 
+/* A solid let into a plane: where a face of it lies in the plane the object with the lower
+ * index is hit, however the two are turned. */
+static void test_flush(void **state) {
+    (void)state;
+    const zt_shape shapes[] = {ZT_SHAPE_BOX, ZT_SHAPE_CYLINDER, ZT_SHAPE_CONE, ZT_SHAPE_DISK};
+    uint64_t seed = 10;
+    zt_meshes *meshes;
+    assert_int_equal(zt_meshes_open(&meshes, &cube, 1, 1, (zt_listener){0}), ZT_OK);
+    for (int round = 0; round < 400; round++) {
+        static test_scene s;
+        scene_begin(&s);
+        scene_material(&s, (vec3){1, 1, 1}, 0);
+        quat turn = quat_axis_angle(test_direction(&seed), test_between(&seed, 0, 6));
+        vec3 up = xform_place((vec3){0, 0, 0}, turn, (vec3){1, 1, 1}).y;
+        double height = test_between(&seed, -5, -2); /* of the plane, seen from the camera */
+        vec3 top = vec3_scale(up, height), low = vec3_scale(up, height - 2);
+        for (int i = 0; i < 2; i++) {
+            if (i == round % 2) {
+                scene_plane(&s, vec3_scale(up, 3), height, 0);
+                continue;
+            }
+            zt_object *o = scene_object(&s, shapes[round / 2 % 4], 0);
+            if (o->shape == ZT_SHAPE_BOX)
+                o->box = (zt_block){vec3_scale(up, height - 1), {6, 2, 6}, turn};
+            else if (o->shape == ZT_SHAPE_DISK)
+                o->disk = (zt_disk){top, up, 3};
+            else
+                o->tube = (zt_tube){low, top, 3, 3.5};
+        }
+        zt_arena arena = {0};
+        const zt_tracer *tracer = prepare(&s.scene, meshes, &arena);
+        rays.count = 200;
+        for (int i = 0; i < rays.count; i++) {
+            vec3 aim = vec3_scale(test_direction(&seed), 1.2);
+            set_ray(i, (vec3){0, 0, 0}, vec3_normalize(vec3_add(top, aim)));
+        }
+        intersect(tracer);
+        for (int i = 0; i < rays.count; i++) assert_int_equal(rays.hit[i], 0);
+        zt_arena_free(&arena);
+    }
+    zt_meshes_close(&meshes);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sphere),         cmocka_unit_test(test_sphere_limb),
         cmocka_unit_test(test_sphere_left),    cmocka_unit_test(test_plane),
         cmocka_unit_test(test_sheared_sphere), cmocka_unit_test(test_triangle),
         cmocka_unit_test(test_triangle_edges), cmocka_unit_test(test_mesh),
-        cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_ties),           cmocka_unit_test(test_flush),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

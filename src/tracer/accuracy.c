@@ -21,9 +21,9 @@
 enum { MIRRORS_MAX = 64 };
 
 /* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
- * double precision can tell. Looked for among so many things at most. */
+ * double precision can tell. Looked for among so many at most. */
 #define SAME 0x1p-44
-enum { TWINS_MAX = 4096 };
+enum { TWINS_MAX = 8192, SURFACES_MAX = 7 };
 
 static zt_accuracy judge_one(const zt_extent *e, double pixel) {
     zt_accuracy a = {.object = e->object,
@@ -55,46 +55,75 @@ static bool boxes_meet(const zt_extent *a, const zt_extent *b, double room) {
            a->low.z <= b->high.z + room && b->low.z <= a->high.z + room;
 }
 
+/* A surface that may have a twin: something as a whole, or one flat face of it. */
+typedef struct twin {
+    const zt_extent *of;
+    bool flat;
+    vec3 normal; /* of what is flat, as is the next */
+    double distance;
+    double rank; /* in the order in which twins are neighbors */
+} twin;
+
+/* Writes the surfaces of something: as many as the result says. Faces that may not
+ * be there count where `perhaps` says so. */
+static int surfaces_of(twin *out, const zt_extent *e, bool perhaps) {
+    int count = 1;
+    *out = e->flat ? (twin){e, true, e->normal, e->distance, fabs(e->distance)}
+                   : (twin){.of = e, .rank = e->low.x};
+    for (int i = 0; i < 3; i++) {
+        if (!(e->faces & 1 << i) || (e->perhaps && !perhaps)) continue;
+        vec3 normal = vec3_normalize(vec3_cross(vec3_normalize(e->ways[(i + 1) % 3]),
+                                                vec3_normalize(e->ways[(i + 2) % 3])));
+        double middle = vec3_dot(normal, e->middle), way = vec3_dot(normal, e->ways[i]);
+        for (int end = -1; end <= 1; end += 2) {
+            double distance = middle + end * way;
+            out[count++] = (twin){e, true, normal, distance, fabs(distance)};
+        }
+    }
+    return count;
+}
+
 /* How far apart two surfaces that lie along each other are; infinite where they do not. */
-static double apart(const zt_extent *a, const zt_extent *b) {
-    if (a->flat != b->flat) return INFINITY;
+static double apart(const twin *p, const twin *q) {
+    const zt_extent *a = p->of, *b = q->of;
+    if (a == b || p->flat != q->flat) return INFINITY;
     double room = WRONG * fmax(a->size, b->size);
     if (!boxes_meet(a, b, room)) return INFINITY;
-    if (a->flat) {
-        double side = vec3_dot(a->normal, b->normal) < 0 ? -1 : 1;
-        double turned = vec3_length(vec3_sub(a->normal, vec3_scale(b->normal, side)));
+    if (p->flat) {
+        double side = vec3_dot(p->normal, q->normal) < 0 ? -1 : 1;
+        double turned = vec3_length(vec3_sub(p->normal, vec3_scale(q->normal, side)));
         double reach = fmin(fmax(a->size, b->size), LARGEST);
-        return fabs(a->distance - side * b->distance) + turned * reach;
+        return fabs(p->distance - side * q->distance) + turned * reach;
     }
     return fmax(vec3_max_abs(vec3_sub(a->low, b->low)),
                 vec3_max_abs(vec3_sub(a->high, b->high)));
 }
 
-/* Where an extent stands in the order in which twins are neighbours. */
-static double rank(const zt_extent *e) { return e->flat ? fabs(e->distance) : e->low.x; }
-
 static int by_rank(const void *pa, const void *pb) {
-    const zt_extent *a = *(const zt_extent *const *)pa, *b = *(const zt_extent *const *)pb;
+    const twin *a = pa, *b = pb;
     if (a->flat != b->flat) return a->flat - b->flat;
-    if (rank(a) != rank(b)) return rank(a) < rank(b) ? -1 : 1;
-    return a->object < b->object ? -1 : a->object > b->object;
+    if (a->rank != b->rank) return a->rank < b->rank ? -1 : 1;
+    return a->of->object < b->of->object ? -1 : a->of->object > b->of->object;
 }
 
 /* Looks for two surfaces that are as near to each other as `least` to `most` of their size. */
 static bool find_twins(const zt_extent **one, const zt_extent **other, double *gap,
                        const zt_extent *extents, int32_t count, double least, double most) {
-    const zt_extent *sorted[TWINS_MAX];
-    if (count > TWINS_MAX) return false;
-    for (int32_t i = 0; i < count; i++) sorted[i] = &extents[i];
-    qsort(sorted, (size_t)count, sizeof *sorted, by_rank);
-    for (int32_t i = 0; i < count; i++)
-        for (int32_t j = i + 1; j < count; j++) {
-            const zt_extent *a = sorted[i], *b = sorted[j];
-            double size = fmax(a->size, b->size);
-            if (a->flat != b->flat || rank(b) - rank(a) > most * size) break;
+    twin sorted[TWINS_MAX];
+    int32_t all = 0;
+    for (int32_t i = 0; i < count; i++) {
+        if (all > TWINS_MAX - SURFACES_MAX) return false;
+        all += surfaces_of(&sorted[all], &extents[i], least == 0);
+    }
+    qsort(sorted, (size_t)all, sizeof *sorted, by_rank);
+    for (int32_t i = 0; i < all; i++)
+        for (int32_t j = i + 1; j < all; j++) {
+            const twin *a = &sorted[i], *b = &sorted[j];
+            double size = fmax(a->of->size, b->of->size);
+            if (a->flat != b->flat || b->rank - a->rank > most * size) break;
             *gap = apart(a, b);
-            *one = a;
-            *other = b;
+            *one = a->of;
+            *other = b->of;
             if (*gap <= most * size && *gap >= least * size) return true;
         }
     return false;

@@ -39,11 +39,17 @@ typedef struct zt_extent {
     vec3 normal;     /* unit; of flat ones */
     double distance; /* likewise */
     vec3 low, high;  /* bounds; infinite for planes */
-    double size;     /* the largest number in its arithmetic */
-    double least;    /* its smallest size that counts; infinite for planes */
-    double near;     /* how far away the surface is from the camera, at least about */
-    double stretch;  /* how many times more roundings than a sphere's it has */
-    double lamp;     /* how far away the nearest lamp is; infinite where there is none */
+    /* Of what is not flat but has flat faces: its middle, the ways from there to the middles of
+     * its faces, and a bit for each way on both ends of which there is a face; `perhaps` says
+     * that only the bounds of a mesh are known. */
+    vec3 middle, ways[3];
+    int faces;
+    bool perhaps;
+    double size;    /* the largest number in its arithmetic */
+    double least;   /* its smallest size that counts; infinite for planes */
+    double near;    /* how far away the surface is from the camera, at least about */
+    double stretch; /* how many times more roundings than a sphere's it has */
+    double lamp;    /* how far away the nearest lamp is; infinite where there is none */
     int32_t lamp_light;
 } zt_extent;
 

@@ -104,6 +104,11 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     set_bounds(m, vec3_sub(middle, reach), vec3_add(middle, reach));
     m->primitive->stretch = (real)(longest * longest_back);
     m->extent->stretch = longest * longest_back;
+    m->extent->middle = middle;
+    m->extent->ways[0] = place->x;
+    m->extent->ways[1] = place->y;
+    m->extent->ways[2] = vec3_scale(place->z, half);
+    m->extent->faces = square > 0 ? 7 : round > 0 && half > 0 ? 4 : 0;
     m->extent->least =
         fmin(vec3_length(place->x), fmin(vec3_length(place->y), vec3_length(place->z)));
     return true;
@@ -306,6 +311,12 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     m->primitive->kind = ZT_PRIMITIVE_MESH;
     m->surface->closed = -1;
     set_bounds(m, vec3_sub(middle, around), vec3_add(middle, around));
+    m->extent->middle = middle;
+    m->extent->ways[0] = vec3_scale(place.x, half.x);
+    m->extent->ways[1] = vec3_scale(place.y, half.y);
+    m->extent->ways[2] = vec3_scale(place.z, half.z);
+    m->extent->faces = 7;
+    m->extent->perhaps = true;
     double inner = fmax(vec3_max_abs(vec3_sub(mesh->low, mesh->origin)),
                         vec3_max_abs(vec3_sub(mesh->high, mesh->origin)));
     placed->reach = (real)reach;
