@@ -15,8 +15,13 @@
 #define BEFORE       (1 - (real)0x1p-6)
 
 /* How many times a hull is halved for a look at it, and from how many rays of a group on it is
- * quicker to ask them all about one triangle than one about all triangles of a cluster. */
+ * quicker to ask them all about one triangle than one about all triangles of a cluster: where
+ * only four numbers are computed at a time, never. */
+#if defined __AVX2__
 enum { HULL_LEVEL = 3, LANES_WORTH = 4 };
+#else
+enum { HULL_LEVEL = 3, LANES_WORTH = ZT_BATCH_LANES + 1 };
+#endif
 
 enum { GROUPS = ZT_BATCH / ZT_BATCH_LANES };
 
