@@ -264,7 +264,7 @@ static void plain_nearest(zt_batch *rays, const stage *st) {
     static zt_batch pieces;
     pieces = *rays;
     if (st->pieces.single_count > 0)
-        ZT_KERNEL_NAME(zt_intersect)(&pieces, &anywhere, &st->pieces, ZT_RUNNING_APART);
+        ZT_KERNEL_NAME(zt_intersect)(&pieces, &anywhere, &st->pieces, ZT_BVH_SCATTERED);
     for (int i = 0; i < rays->count; i++) {
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
@@ -340,8 +340,8 @@ static void compare_nearest(zt_batch *rays, const stage *st) {
     int32_t source = source_of(rays);
     leaving_one += source >= 0;
     zt_bundle bundle = bundle_of(rays, source);
-    for (zt_running running = ZT_RUNNING_TOGETHER; running <= ZT_RUNNING_APART; running++) {
-        ZT_KERNEL_NAME(zt_intersect)(rays, &bundle, st->tracer, running);
+    for (zt_bvh_kind kind = ZT_BVH_COHERENT; kind <= ZT_BVH_SCATTERED; kind++) {
+        ZT_KERNEL_NAME(zt_intersect)(rays, &bundle, st->tracer, kind);
         for (int i = 0; i < rays->count; i++) {
             int32_t hit = rays->hit[i];
             bool mesh = hit >= 0 && st->tracer->primitives[hit].kind == ZT_PRIMITIVE_MESH;

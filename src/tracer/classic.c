@@ -269,8 +269,7 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
     w->points.source = -1;
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
         zt_bundle bundle = bundle_around(w, around, w->points.source);
-        intersect(&w->rays, &bundle, tracer,
-                  depth == 0 ? ZT_RUNNING_TOGETHER : ZT_RUNNING_APART);
+        intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
         keep_hits(w);
         if (w->rays.count == 0) return;
         find_points(&w->points, &w->rays, tracer);
@@ -339,7 +338,7 @@ static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *me
         probes[i].lit = 0;
     }
     zt_bundle bundle = bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
-    intersect(&w->rays, &bundle, tracer, ZT_RUNNING_APART);
+    intersect(&w->rays, &bundle, tracer, ZT_BVH_SCATTERED);
     keep_hits(w);
     if (w->rays.count == 0) return;
     find_points(&w->points, &w->rays, tracer);

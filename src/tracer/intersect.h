@@ -6,14 +6,11 @@
 #include "tracer/isa.h"
 #include "tracer/tracer.h"
 
-/* How rays run: nearly side by side, or anyhow. Costs differ, answers do not. */
-typedef enum zt_running { ZT_RUNNING_TOGETHER, ZT_RUNNING_APART } zt_running;
-
 /* The nearest hit of each ray (origins, directions and count given) of a bundle: sets t, hit
  * and part; hit is -1 and t infinite where there is none. Of hits that are as near as roundings
  * can tell the first object's counts. */
 void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
-                                  const zt_tracer *tracer, zt_running running);
+                                  const zt_tracer *tracer, zt_bvh_kind kind);
 
 /* Whether something lies between origin and t (given), and not at t itself as far as roundings
  * can tell: hit, given as -1, stays so where nothing does. */

@@ -9,10 +9,11 @@
 #include "tracer/triangles.h"
 
 /* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
- * distances; and how long before the box around a mesh its rays begin, so that they begin
- * before all that is in it. */
+ * distances; and how long before the box around all there is its rays begin, as a share of its
+ * size: so that they begin before all that is in it, and yet so near that single precision
+ * keeps what counts. */
 #define LOOK_FURTHER (1 + 0x1p-18f)
-#define BEFORE       (1 - (real)0x1p-6)
+#define BEFORE       ((real)0x1p-4)
 
 /* How many times a hull is halved for a look at it, and from how many rays of a group on it is
  * quicker to ask them all about one triangle than one about all triangles of a cluster: where
@@ -148,8 +149,7 @@ static void meet_halves(lanes *restrict l, const zt_bvh_box *boxes, int index, i
 }
 
 /* Adds a group of the batch's rays to those that the hierarchy is asked about, if any of the
- * lanes in `set` meets the hull. They begin before they enter the box around it, so that single
- * precision keeps what counts. */
+ * lanes in `set` meets the hull. */
 static void pack(search *restrict s, int first, uint32_t set) {
     const zt_bvh_box *boxes = s->placed->built->hull->boxes;
     zt_bvh_rays *restrict packed = &s->packed;
@@ -162,8 +162,10 @@ static void pack(search *restrict s, int first, uint32_t set) {
     meet_halves(&l, boxes, 1, HULL_LEVEL);
     if (!any_meets(&l)) return;
     const int at = packed->count;
+    const real before = BEFORE * s->placed->inner;
     WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
-        real t0 = begin[j] * BEFORE;
+        real slow = real_min(real_min(real_abs(l.kx[j]), real_abs(l.ky[j])), real_abs(l.kz[j]));
+        real t0 = begin[j] - before * slow;
         t0 = ((t0 > 0) & (t0 < REAL_INFINITY)) ? t0 : 0;
         real ox = l.ox[j] + t0 * l.dx[j], oy = l.oy[j] + t0 * l.dy[j],
              oz = l.oz[j] + t0 * l.dz[j], t = l.t[j] - t0;
@@ -299,11 +301,13 @@ static void search_crowd(zt_batch *rays, const zt_tracer *tracer, bool any, zt_b
     c.any = any;
     c.kind = kind;
     const zt_origins *from = rays->from;
+    const real before = BEFORE * zt_box_size(&tracer->crowd_box);
     c.packed.count = rays->count;
     for (int i = 0; i < rays->count; i++) {
         real ox = from->x[i], oy = from->y[i], oz = from->z[i];
         real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        real begin = enter_box(&tracer->crowd_box, ox, oy, oz, dx, dy, dz) * BEFORE;
+        real begin =
+            real_max(enter_box(&tracer->crowd_box, ox, oy, oz, dx, dy, dz) - before, 0);
         bool looks = !any || (rays->hit[i] < 0 && rays->t[i] > 0);
         c.begin[i] = begin;
         c.packed.ox[i] = (float)(ox + begin * dx);
@@ -338,9 +342,8 @@ static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer 
 }
 
 void ZT_KERNEL_NAME(zt_search_nearest)(zt_batch *rays, const zt_bundle *bundle,
-                                       const zt_tracer *tracer, zt_running running) {
-    search_all(rays, bundle, tracer, false,
-               running == ZT_RUNNING_TOGETHER ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
+                                       const zt_tracer *tracer, zt_bvh_kind kind) {
+    search_all(rays, bundle, tracer, false, kind);
 }
 
 void ZT_KERNEL_NAME(zt_search_any)(zt_batch *rays, const zt_bundle *bundle,

@@ -320,6 +320,7 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     double inner = fmax(vec3_max_abs(vec3_sub(mesh->low, mesh->origin)),
                         vec3_max_abs(vec3_sub(mesh->high, mesh->origin)));
     placed->reach = (real)reach;
+    placed->inner = (real)inner;
     placed->room = (real)(reach * vec3_max_abs(place.shift) + inner);
     double longest =
         fmax(vec3_max_abs(place.x), fmax(vec3_max_abs(place.y), vec3_max_abs(place.z)));

@@ -46,7 +46,8 @@ typedef struct zt_placed_mesh {
     vec3 rows[3], at;
     xform place; /* the way back */
     real reach, room;
-    real extent; /* the largest coordinate of its bounds, in the mesh's space and placed */
+    real inner;  /* the largest coordinate of its bounds in its own space */
+    real extent; /* no less than any number in the arithmetic of its place */
     bool smooth, vertex_colors;
 } zt_placed_mesh;
 
