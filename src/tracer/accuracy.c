@@ -23,7 +23,7 @@ enum { MIRRORS_MAX = 64 };
 /* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
  * double precision can tell. Looked for among so many at most. */
 #define SAME 0x1p-44
-enum { TWINS_MAX = 8192, SURFACES_MAX = 7 };
+enum { TWINS_MAX = 8192, SURFACES_MAX = 7, PAIRS_MAX = 20000 };
 
 static zt_accuracy judge_one(const zt_extent *e, double pixel) {
     zt_accuracy a = {.object = e->object,
@@ -106,11 +106,13 @@ static int by_rank(const void *pa, const void *pb) {
     return a->of->object < b->of->object ? -1 : a->of->object > b->of->object;
 }
 
-/* Looks for two surfaces that are as near to each other as `least` to `most` of their size. */
+/* Looks for two surfaces that are as near to each other as `least` to `most` of their size;
+ * where more pairs than PAIRS_MAX stand in line, as things on a floor do, says that there are
+ * some only where `least` is 0. */
 static bool find_twins(const zt_extent **one, const zt_extent **other, double *gap,
                        const zt_extent *extents, int32_t count, double least, double most) {
     twin sorted[TWINS_MAX];
-    int32_t all = 0;
+    int32_t all = 0, pairs = 0;
     for (int32_t i = 0; i < count; i++) {
         if (all > TWINS_MAX - SURFACES_MAX) return false;
         all += surfaces_of(&sorted[all], &extents[i], least == 0);
@@ -121,6 +123,7 @@ static bool find_twins(const zt_extent **one, const zt_extent **other, double *g
             const twin *a = &sorted[i], *b = &sorted[j];
             double size = fmax(a->of->size, b->of->size);
             if (a->flat != b->flat || b->rank - a->rank > most * size) break;
+            if (++pairs > PAIRS_MAX) return least == 0;
             *gap = apart(a, b);
             *one = a->of;
             *other = b->of;
