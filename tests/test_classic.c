@@ -11,48 +11,7 @@
 
 #include <cmocka.h>
 
-#include "render/render.h"
-#include "scenes.h"
-
-static const vec3 white = {1, 1, 1};
-
-/* Renders a scene to an image that the caller frees; *left_out samples were not finite. */
-static zt_precision precision = ZT_PRECISION_AUTO;
-
-static zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, int width,
-                                    int height, int samples, int threads) {
-    zt_arena arena = {0};
-    zt_meshes *meshes;
-    zt_pool *pool;
-    zt_render_work *work;
-    zt_image *image;
-    zt_ready ready;
-    assert_int_equal(
-        zt_meshes_open(&meshes, scene->meshes, scene->mesh_count, threads, (zt_listener){0}),
-        ZT_OK);
-    assert_int_equal(zt_pool_open(&pool, threads), ZT_OK);
-    assert_int_equal(zt_render_work_push(&work, &arena, threads), ZT_OK);
-    assert_int_equal(zt_image_create(&image, width, height), ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&ready, scene, precision,
-                                       zt_lens_pixel(&scene->camera, height), meshes, &arena),
-                     ZT_OK);
-    zt_render_job job = {.scene = &ready,
-                         .lens = zt_lens_prepare(&scene->camera, width, height),
-                         .samples = samples};
-    assert_int_equal(zt_render(image, left_out, &job, work, pool), ZT_OK);
-    zt_pool_close(&pool);
-    zt_meshes_close(&meshes);
-    zt_arena_free(&arena);
-    return image;
-}
-
-static zt_image *render(const zt_scene *scene, int width, int height, int samples,
-                        int threads) {
-    int64_t left_out;
-    zt_image *image = render_leaving_out(&left_out, scene, width, height, samples, threads);
-    assert_int_equal(left_out, 0);
-    return image;
-}
+#include "rendering.h"
 
 /* The light of the one ray that runs straight along -z. */
 static vec3 center_pixel(const zt_scene *scene) {
