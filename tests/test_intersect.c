@@ -468,13 +468,16 @@ static void test_ties(void **state) {
  * index is hit, however the two are turned. */
 static void test_flush(void **state) {
     (void)state;
-    const zt_shape shapes[] = {ZT_SHAPE_BOX, ZT_SHAPE_CYLINDER, ZT_SHAPE_CONE, ZT_SHAPE_DISK};
+    const zt_shape shapes[] = {ZT_SHAPE_BOX, ZT_SHAPE_CYLINDER, ZT_SHAPE_CONE, ZT_SHAPE_DISK,
+                               ZT_SHAPE_MESH};
     uint64_t seed = 10;
     zt_meshes *meshes;
     assert_int_equal(zt_meshes_open(&meshes, &cube, 1, 1, (zt_listener){0}), ZT_OK);
     for (int round = 0; round < 400; round++) {
         static test_scene s;
         scene_begin(&s);
+        s.scene.meshes = &cube;
+        s.scene.mesh_count = 1;
         scene_material(&s, (vec3){1, 1, 1}, 0);
         quat turn = quat_axis_angle(test_direction(&seed), test_between(&seed, 0, 6));
         vec3 up = xform_place((vec3){0, 0, 0}, turn, (vec3){1, 1, 1}).y;
@@ -485,10 +488,13 @@ static void test_flush(void **state) {
                 scene_plane(&s, vec3_scale(up, 3), height, 0);
                 continue;
             }
-            zt_object *o = scene_object(&s, shapes[round / 2 % 4], 0);
+            zt_object *o = scene_object(&s, shapes[round / 2 % 5], 0);
             if (o->shape == ZT_SHAPE_BOX)
                 o->box = (zt_block){vec3_scale(up, height - 1), {6, 2, 6}, turn};
-            else if (o->shape == ZT_SHAPE_DISK)
+            else if (o->shape == ZT_SHAPE_MESH) {
+                o->mesh = 0;
+                o->placement = (zt_placement){vec3_scale(up, height - 3), turn, {3, 3, 3}};
+            } else if (o->shape == ZT_SHAPE_DISK)
                 o->disk = (zt_disk){top, up, 3};
             else
                 o->tube = (zt_tube){low, top, 3, 3.5};

@@ -32,6 +32,7 @@ typedef struct search {
     const zt_placed_mesh *placed;
     int32_t index;         /* of the primitive that the mesh is */
     bool any;              /* one hit is enough */
+    real tie;              /* as in zt_tracer; of shadow rays 0 */
     int32_t first[GROUPS]; /* of each group below, where it stands in the batch */
     bool alike[GROUPS];    /* whether its rays run along one axis most */
     /* The rays in the mesh's space. */
@@ -79,8 +80,11 @@ static void look_ahead(lanes *restrict l, const search *restrict s, int first) {
             real until = (rays->t[first + j] - near[first + j]) * (1 - TIE);
             l->t[j] = rays->hit[first + j] < 0 ? until : 0;
         }
-    else
-        memcpy(l->t, rays->t + first, sizeof l->t);
+    else {
+        const real more = 1 + 2 * s->tie, share = 2 * s->tie / TIE;
+        WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) l->t[j] =
+            rays->t[first + j] * more + share * near[first + j];
+    }
     for (int j = count - first; j < ZT_BATCH_LANES; j++) l->t[j] = 0;
 }
 
@@ -215,13 +219,19 @@ static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
 /* What was found becomes the batch's. */
 static void take(const search *restrict s) {
     zt_batch *restrict rays = s->rays;
+    const real *restrict near = rays->from->near;
     const int32_t index = s->index;
+    const real more = 1 + s->tie, less = 1 - s->tie, share = s->tie / TIE;
     for (int at = 0; at < s->packed.count; at += ZT_BATCH_LANES) {
         const int first = s->first[at / ZT_BATCH_LANES];
         WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
             real t = s->begin[at + j] + s->t[at + j], nearest = rays->t[first + j];
             int32_t hit = rays->hit[first + j], part = s->part[at + j];
-            bool nearer = (part >= 0) & !((t == nearest) & (hit >= 0) & (hit < index));
+            real slack = share * near[first + j];
+            /* As in the loops over lanes of tracer/intersect.c. */
+            int32_t later = index > hit;
+            int32_t before = t * more + slack < nearest, no_later = t * less - slack <= nearest;
+            int32_t nearer = (part >= 0) & ((later & before) | ((1 - later) & no_later));
             rays->t[first + j] = nearer ? t : nearest;
             rays->hit[first + j] = nearer ? index : hit;
             rays->part[first + j] = nearer ? part : rays->part[first + j];
@@ -246,6 +256,7 @@ static void begin_search(search *s, zt_batch *rays, const zt_tracer *tracer, int
     s->placed = &tracer->placed[tracer->primitives[index].placed];
     s->index = index;
     s->any = any;
+    s->tie = any ? 0 : tracer->tie;
     s->packed.count = 0;
 }
 
