@@ -16,6 +16,7 @@ int main(int argc, char **argv) {
     if (with_peers) bench_duels();
     bench_starts(with_peers);
     bench_ways();
+    bench_floors();
     bench_growth();
     bench_movie();
     return 0;

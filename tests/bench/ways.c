@@ -27,6 +27,7 @@ static void compare(const char *film, int samples, const way *ways, int count, i
         opened[i].isa = ways[i].isa;
         zt_output_format format = zt_renderer_format(opened[i].renderer);
         pixels[i] = (double)format.width * format.height;
+        opened[i].repeats = (int)(repeats * (pixels[0] / pixels[i])); /* about as long */
         runners[i] = (runner){.name = ways[i].name, .run = frames_run, .user = &opened[i]};
     }
     race(runners, count, ROUNDS);
