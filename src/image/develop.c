@@ -91,7 +91,7 @@ static uint8_t code_at(const uint32_t *table, uint32_t place) {
 /* One row, a piece at a time. */
 static void develop_row(uint8_t *rgb, const float *pixels, int width, const uint32_t *table) {
     enum { PIECE = 64 };
-    uint32_t places[4 * PIECE];
+    uint32_t places[4 * PIECE] = {0};
     for (int x = 0; x < width; x += PIECE) {
         int count = width - x < PIECE ? width - x : PIECE;
         find_places(places, pixels + 4 * (size_t)x, 4 * count);
