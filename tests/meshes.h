@@ -21,6 +21,18 @@ static inline zt_mesh cube_mesh(void) {
                      .high = {1, 1, 1}};
 }
 
+/* The square from -1 to 1 across y. Constant. */
+static inline zt_mesh square_mesh(void) {
+    static const float positions[] = {-1, 0, -1, -1, 0, 1, 1, 0, 1, 1, 0, -1, 0};
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+    return (zt_mesh){.positions = positions,
+                     .triangles = triangles,
+                     .vertex_count = 4,
+                     .triangle_count = 2,
+                     .low = {-1, 0, -1},
+                     .high = {1, 0, 1}};
+}
+
 /* An octahedron whose triangles are cut into four so many times, each corner moved to the unit
  * sphere; its normals are its corners. Corners are not shared. */
 typedef struct ball_mesh {
