@@ -111,12 +111,11 @@ static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, r
     return leaving == 0 ? t : leaving < 0 ? through : REAL_INFINITY;
 }
 
-/* The side of the origin that a directed edge a -> b has it on, twice the area they span. The
- * products of floats are exact in double, so the sign is that of the exact result; of doubles
- * they are rounded. Either way the edge taken the other way round gives exactly the negative.
- */
+/* The side of the origin that a directed edge a -> b has it on, twice the area they span: right
+ * to its last bits, so that a sliver is met where it is and not anywhere along it. The edge
+ * taken the other way round gives exactly the negative. */
 static inline double edge_side(real ax, real ay, real bx, real by) {
-    return (double)ax * (double)by - (double)ay * (double)bx;
+    return real_products(ax, by, ay, bx);
 }
 
 /* Whether a point exactly on the edge a -> b of a counterclockwise triangle is its own: true

@@ -33,6 +33,28 @@ static inline real real_abs(real a) { return fabsf(a); }
 static inline real real_max(real a, real b) { return a > b ? a : b; }
 static inline real real_min(real a, real b) { return a < b ? a : b; }
 
+/* a b - c d, right to the last bits of its own however much of it cancels; a b - c d and
+ * c d - a b are each other's negatives. Products of floats are exact in double; of doubles the
+ * roundings are made good (T. J. Dekker, "A floating-point technique for extending the
+ * available precision", 1971). */
+#if defined ZT_REAL_IS_DOUBLE
+static inline double rounding_of_product(double a, double b, double product) {
+    const double split = 0x1p27 + 1;
+    double ca = split * a, cb = split * b;
+    double ah = ca - (ca - a), al = a - ah, bh = cb - (cb - b), bl = b - bh;
+    return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+}
+static inline double real_products(real a, real b, real c, real d) {
+    double p = a * b, q = c * d;
+    double low = rounding_of_product(a, b, p) - rounding_of_product(c, d, q);
+    return (p - q) + (real_abs(low) < REAL_INFINITY ? low : 0); /* too large to be split */
+}
+#else
+static inline double real_products(real a, real b, real c, real d) {
+    return (double)a * (double)b - (double)c * (double)d;
+}
+#endif
+
 typedef struct real3 {
     real x, y, z;
 } real3;

@@ -9,6 +9,9 @@
  */
 #define SIMILARITY_TOLERANCE 1e-12
 
+/* Up to this stretch double precision inverts a transform well enough for double precision. */
+#define PLAIN_STRETCH 100
+
 /* The factor of a transform that scales alike in all directions, or 0 for another one. */
 static double similarity_scale(const xform *m) {
     double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z);
@@ -29,15 +32,66 @@ static void set_bounds(zt_making *m, vec3 low, vec3 high) {
     m->primitive->box = (zt_box){to_real3(vec3_sub(low, grow)), to_real3(vec3_add(high, grow))};
 }
 
+/* Numbers of 113 bits, in software, where the compiler has them. */
+#if defined __SIZEOF_FLOAT128__
+__extension__ typedef __float128 wide;
+#else
+typedef long double wide;
+#endif
+
+typedef struct wide3 {
+    wide x, y, z;
+} wide3;
+
+static wide3 widen(vec3 v) { return (wide3){v.x, v.y, v.z}; }
+static wide3 wide_sub(wide3 a, wide3 b) { return (wide3){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static wide wide_dot(wide3 a, wide3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static wide3 wide_cross(wide3 a, wide3 b) {
+    return (wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static wide wide_max_abs(wide3 a) {
+    wide x = a.x < 0 ? -a.x : a.x, y = a.y < 0 ? -a.y : a.y, z = a.z < 0 ? -a.z : a.z;
+    return x > y ? x > z ? x : z : y > z ? y : z;
+}
+static vec3 narrow(wide3 a, wide scale) {
+    return (vec3){(double)(a.x * scale), (double)(a.y * scale), (double)(a.z * scale)};
+}
+
+static double longest_of(const xform *m) {
+    return fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
+}
+
+/* What undoes a transform, right to the last bits however askew its axes are: in double their
+ * cross products cancel where one group stretches what another one turns. */
+static xform invert(const xform *m) {
+    xform back = xform_inverse(m);
+    if (longest_of(m) * longest_of(&back) < PLAIN_STRETCH) return back;
+    wide3 x = widen(m->x), y = widen(m->y), z = widen(m->z);
+    wide3 r[3] = {wide_cross(y, z), wide_cross(z, x), wide_cross(x, y)};
+    wide scale = 1 / wide_dot(r[0], x);
+    vec3 rows[3];
+    double shift[3];
+    for (int i = 0; i < 3; i++) {
+        rows[i] = narrow(r[i], scale);
+        shift[i] = (double)(-wide_dot(r[i], widen(m->shift)) * scale);
+    }
+    return (xform){{rows[0].x, rows[1].x, rows[2].x},
+                   {rows[0].y, rows[1].y, rows[2].y},
+                   {rows[0].z, rows[1].z, rows[2].z},
+                   {shift[0], shift[1], shift[2]}};
+}
+
 /* Each of the following makes one primitive and its surface; false where there is nothing to
  * hit. */
 
 static bool prepare_plane(zt_making *m) {
     const zt_plane *plane = &m->object->plane;
     vec3 given = vec3_normalize(plane->normal);
-    vec3 point = xform_point(m->world, vec3_scale(given, plane->distance));
-    vec3 normal = vec3_normalize(xform_normal(m->world, given));
-    double distance = vec3_dot(normal, point);
+    vec3 across = xform_normal(m->world, given), normal = vec3_normalize(across);
+    /* Not by way of a point of it, which a group may take far along it. */
+    double distance =
+        plane->distance * fabs(xform_determinant(m->world)) / vec3_length(across) +
+        vec3_dot(normal, m->world->shift);
     if (vec3_max_abs(normal) == 0 || !finite3(normal) || !isfinite(distance)) return false;
     zt_primitive *p = m->primitive;
     p->kind = ZT_PRIMITIVE_PLANE;
@@ -62,9 +116,11 @@ static bool prepare_triangle(zt_making *m) {
         if (!finite3(v[i])) return false;
         m->primitive->triangle.vertices[i] = to_real3(v[i]);
     }
-    vec3 normal = vec3_normalize(
-        vec3_cross(vec3_normalize(vec3_sub(v[1], v[0])), vec3_normalize(vec3_sub(v[2], v[0]))));
-    if (vec3_max_abs(normal) == 0) return false;
+    wide3 corner = widen(v[0]);
+    wide3 across = wide_cross(wide_sub(widen(v[1]), corner), wide_sub(widen(v[2]), corner));
+    wide longest = wide_max_abs(across);
+    if (!(longest > 0)) return false;
+    vec3 normal = vec3_normalize(narrow(across, 1 / longest));
     m->primitive->kind = ZT_PRIMITIVE_TRIANGLE;
     m->surface->normal = to_real3(normal);
     m->surface->center = m->primitive->triangle.vertices[0];
@@ -81,7 +137,7 @@ static bool prepare_triangle(zt_making *m) {
  * to `high` along the axis. */
 static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place, double round,
                        double square, double low, double high, double ball) {
-    xform back = xform_inverse(place);
+    xform back = invert(place);
     if (!finite3(place->shift)) return false;
     vec3 rows[3], reach, middle = xform_point(place, (vec3){0, 0, (low + high) / 2});
     double half = (high - low) / 2, longest = 0, longest_back = 0;
@@ -294,7 +350,7 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     vec3 half = vec3_scale(vec3_sub(mesh->high, mesh->low), 0.5);
     vec3 middle = xform_point(&place, vec3_add(mesh->low, half));
     place.shift = xform_point(&place, mesh->origin);
-    xform back = xform_inverse(&place);
+    xform back = invert(&place);
     double reach = 0;
     double reaches[3];
     for (int i = 0; i < 3; i++) {

@@ -54,7 +54,7 @@ static inline bool about_one_side(real x0, real y0, real x1, real y1, real x2, r
 
 /* Where ray number i meets triangle number k of a cluster, in (0, *t], `*triangle` being that
  * which is at *t already, or -1: sets both and returns true where this one counts before it.
- * The products of single precision are exact in double. */
+ */
 static inline bool settle(real *t, int32_t *triangle, const zt_cluster *cluster, int k,
                           const zt_leaning_rays *rays, int i) {
     int axis = rays->axis[i], first = axis == 2 ? 0 : axis + 1,
@@ -67,9 +67,9 @@ static inline bool settle(real *t, int32_t *triangle, const zt_cluster *cluster,
         y[corner] = ((real)cluster->corners[corner][second][k] - rays->o[1][i]) -
                     rays->lean[1][i] * z[corner];
     }
-    double u = (double)x[1] * (double)y[2] - (double)y[1] * (double)x[2];
-    double v = (double)x[2] * (double)y[0] - (double)y[2] * (double)x[0];
-    double w = (double)x[0] * (double)y[1] - (double)y[0] * (double)x[1];
+    double u = real_products(x[1], y[2], y[1], x[2]);
+    double v = real_products(x[2], y[0], y[2], x[0]);
+    double w = real_products(x[0], y[1], y[0], x[1]);
     double area = u + v + w;
     double depth = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / area;
     real at = (real)(depth * (double)rays->inverse[i]);
