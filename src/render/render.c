@@ -33,7 +33,8 @@ typedef struct frame {
     zt_image *image;
     const zt_render_job *job;
     const zt_render_work *work;
-    int tile_columns;
+    int tile_columns, tile_count;
+    int run; /* tiles that a thread takes at a time */
     atomic_bool stopped;
     atomic_llong left_out_count;
 } frame;
@@ -173,25 +174,45 @@ static bool render_block(frame *f, struct render_thread *own, tile area, int fir
  * batch stay close together. Blocks of a tile are squares of these many pixels. */
 static int block_size(int samples) { return samples >= 16 ? 16 : samples >= 4 ? 64 : ZT_BATCH; }
 
-static void render_tile(void *user, int index, int worker) {
-    frame *f = user;
+static bool render_tile(frame *f, int index, int worker) {
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
                  min_int(TILE_SIDE, f->image->height - y)};
     int most = block_size(f->job->samples);
-    for (int first = 0; first < ZT_BATCH; first += most) {
+    for (int first = 0; first < ZT_BATCH; first += most)
+        if (!render_block(f, &f->work->threads[worker], area, first, most)) return false;
+    return true;
+}
+
+static void render_run(void *user, int index, int worker) {
+    frame *f = user;
+    int end = min_int((index + 1) * f->run, f->tile_count);
+    for (int tile = index * f->run; tile < end; tile++) {
         if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return;
-        if (!render_block(f, &f->work->threads[worker], area, first, most))
+        if (!render_tile(f, tile, worker))
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
     }
+}
+
+/* How many tiles side by side a thread takes at a time: two that write next to each other slow
+ * each other down, so as many as leave enough to share out to the end. */
+static int run_length(int tile_count, int thread_count) {
+    enum { RUN_MAX = 16, RUNS = 32 };
+    int length = tile_count / (thread_count * RUNS);
+    return length < 1 ? 1 : min_int(length, RUN_MAX);
 }
 
 zt_status zt_render(zt_image *image, int64_t *left_out_count, const zt_render_job *job,
                     zt_render_work *work, zt_pool *pool) {
     int columns = (image->width + TILE_SIDE - 1) / TILE_SIDE;
     int rows = (image->height + TILE_SIDE - 1) / TILE_SIDE;
-    frame f = {.image = image, .job = job, .work = work, .tile_columns = columns};
-    zt_pool_run(pool, columns * rows, render_tile, &f);
+    frame f = {.image = image,
+               .job = job,
+               .work = work,
+               .tile_columns = columns,
+               .tile_count = columns * rows,
+               .run = run_length(columns * rows, zt_pool_thread_count(pool))};
+    zt_pool_run(pool, (f.tile_count + f.run - 1) / f.run, render_run, &f);
     *left_out_count = f.left_out_count;
     return f.stopped ? ZT_ESTOPPED : ZT_OK;
 }
