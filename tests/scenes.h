@@ -25,7 +25,8 @@ static inline void scene_begin(test_scene *s) {
 }
 
 static inline int32_t scene_material(test_scene *s, vec3 color, double reflectivity) {
-    s->materials[s->scene.material_count] = (zt_material){.color = color, .reflectivity = reflectivity};
+    s->materials[s->scene.material_count] =
+        (zt_material){.color = color, .reflectivity = reflectivity};
     return s->scene.material_count++;
 }
 

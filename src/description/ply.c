@@ -188,7 +188,7 @@ static zt_status take_strip(void *user, const zt_ply_property *property, int32_t
     reader *r = user;
     uint32_t before[2] = {0};
     for (int32_t i = 0, length = 0; i < count; i++) {
-        uint32_t corner;
+        uint32_t corner = 0;
         bool restart;
         ZT_TRY(read_corner(r, property->type, &corner, &restart));
         if (restart) {

@@ -120,6 +120,7 @@ static bool find_twins(const zt_extent **one, const zt_extent **other, double *g
         if (all > TWINS_MAX - SURFACES_MAX) return false;
         all += surfaces_of(&sorted[all], &extents[i], least == 0);
     }
+    if (all < 2) return false;
     qsort(sorted, (size_t)all, sizeof *sorted, by_rank);
     for (int32_t i = 0; i < all; i++)
         for (int32_t j = i + 1; j < all; j++) {

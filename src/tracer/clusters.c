@@ -69,7 +69,8 @@ static inline int bin_of(float at, float low, float scale) {
 }
 
 static float cluster_cost(const bin *b) {
-    return b->count ? surface(&b->box) * (float)((b->count + ZT_CLUSTER - 1) / ZT_CLUSTER) : 0;
+    int32_t clusters = (b->count + ZT_CLUSTER - 1) / ZT_CLUSTER;
+    return b->count ? surface(&b->box) * (float)clusters : 0;
 }
 
 static void add(bin *to, const bin *b) {
@@ -225,7 +226,7 @@ zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint
     size_t count = (size_t)triangle_count;
     work w = {.out = out,
               .items = aligned_alloc(16, (count + 1) * sizeof *w.items),
-              .starts = malloc((count + 1) * sizeof *w.starts),
+              .starts = calloc(count + 1, sizeof *w.starts),
               .positions = positions,
               .triangles = triangles};
     zt_pool *pool = NULL;

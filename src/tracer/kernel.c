@@ -39,7 +39,7 @@ static const zt_kernel *select_kernel(zt_precision precision) {
 
 zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision precision,
                             double pixel, zt_meshes *meshes, zt_arena *arena) {
-    zt_tracer *tracer;
+    zt_tracer *tracer = NULL;
     zt_extent *extents;
     int32_t count;
     *ready = (zt_ready){.precision = precision};

@@ -131,8 +131,9 @@ static inline bool edge_owned(real ax, real ay, real bx, real by) {
  * edge. */
 static inline real zt_triangle_meet(real3 v0, real3 v1, real3 v2, real ox, real oy, real oz,
                                     real dx, real dy, real dz) {
-    bool x_longest = (real_abs(dx) >= real_abs(dy)) & (real_abs(dx) >= real_abs(dz));
-    bool y_longest = !x_longest & (real_abs(dy) >= real_abs(dz));
+    real along_x = real_abs(dx), along_y = real_abs(dy), along_z = real_abs(dz);
+    bool x_longest = (along_x >= along_y) & (along_x >= along_z);
+    bool y_longest = !x_longest & (along_y >= along_z);
     /* The axes in cyclic order, so that z is the one along which the ray runs most. */
     real ex = x_longest ? dy : y_longest ? dz : dx;
     real ey = x_longest ? dz : y_longest ? dx : dy;

@@ -28,8 +28,9 @@ static inline void zt_lean_rays(zt_leaning_rays *rays, const real *ox, const rea
                                 int count) {
     WIDE_LOOP
     for (int i = 0; i < count; i++) {
-        bool x = (real_abs(dx[i]) >= real_abs(dy[i])) & (real_abs(dx[i]) >= real_abs(dz[i]));
-        bool y = !x & (real_abs(dy[i]) >= real_abs(dz[i]));
+        real along_x = real_abs(dx[i]), along_y = real_abs(dy[i]), along_z = real_abs(dz[i]);
+        bool x = (along_x >= along_y) & (along_x >= along_z);
+        bool y = !x & (along_y >= along_z);
         real along = x ? dx[i] : y ? dy[i] : dz[i];
         rays->o[0][i] = x ? oy[i] : y ? oz[i] : ox[i];
         rays->o[1][i] = x ? oz[i] : y ? ox[i] : oy[i];
