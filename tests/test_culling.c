@@ -185,6 +185,7 @@ static zt_tracer *prepare(const zt_scene *scene, zt_meshes *meshes, zt_arena *ar
     int32_t count;
     assert_int_equal(ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, scene, meshes, arena),
                      ZT_OK);
+    assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }
 

@@ -19,6 +19,8 @@ extern KERNELS(avx512);
 typedef zt_status prepare(zt_tracer **tracer, zt_extent **extents, int32_t *extent_count,
                           const zt_scene *scene, zt_meshes *meshes, zt_arena *arena);
 prepare zt_prepare_single, zt_prepare_double;
+typedef zt_status prepare_search(zt_tracer *tracer, zt_meshes *meshes, zt_arena *arena);
+prepare_search zt_prepare_search_single, zt_prepare_search_double;
 
 static const zt_kernel *select_kernel(zt_precision precision) {
     const char *wanted = getenv("ZOETROPE_ISA");
@@ -50,8 +52,10 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision
             ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
                                                                           : ZT_PRECISION_DOUBLE;
     }
-    if (ready->precision == ZT_PRECISION_DOUBLE)
-        ZT_TRY(zt_prepare_double(&tracer, &extents, &count, scene, meshes, arena));
+    bool single = ready->precision == ZT_PRECISION_SINGLE;
+    if (!single) ZT_TRY(zt_prepare_double(&tracer, &extents, &count, scene, meshes, arena));
+    ZT_TRY(single ? zt_prepare_search_single(tracer, meshes, arena)
+                  : zt_prepare_search_double(tracer, meshes, arena));
     ready->tracer = tracer;
     ready->kernel = select_kernel(ready->precision);
     return ZT_OK;

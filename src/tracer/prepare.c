@@ -149,8 +149,8 @@ static zt_bvh_box outside(const zt_primitive *p, real crowd_size) {
     return box;
 }
 
-/* What is asked by itself, and what through a hierarchy. */
-static zt_status sort_primitives(zt_tracer *tracer, zt_meshes *meshes, zt_arena *arena) {
+zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
+                                          zt_arena *arena) {
     size_t count = (size_t)tracer->primitive_count;
     int32_t *single = ZT_PUSH(arena, int32_t, count), *crowd = ZT_PUSH(arena, int32_t, count);
     if (!single || !crowd) return ZT_EMEMORY;
@@ -211,7 +211,6 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
     zt_scene_worlds(worlds, scene, scene->camera.position);
     ZT_TRY(prepare_lights(tracer, scene, arena));
     ZT_TRY(prepare_objects(&all, tracer, scene, worlds, meshes));
-    ZT_TRY(sort_primitives(tracer, meshes, arena));
     if (zt_accuracy_twins(all.extents, all.count, (double)TIE)) tracer->tie = TIE;
     *out = tracer;
     *extents = all.extents;

@@ -12,6 +12,9 @@
 /* Up to this stretch double precision inverts a transform well enough for double precision. */
 #define PLAIN_STRETCH 100
 
+/* Triangles with a smaller sine of an angle are slivers. */
+#define SLIVER 0x1p-7
+
 /* The factor of a transform that scales alike in all directions, or 0 for another one. */
 static double similarity_scale(const xform *m) {
     double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z);
@@ -109,6 +112,18 @@ static bool prepare_plane(zt_making *m) {
     return true;
 }
 
+/* The unit normal; zero where there is no area. Of slivers the double's cross product has few
+ * right digits. */
+static vec3 triangle_normal(const vec3 *v) {
+    vec3 plain =
+        vec3_cross(vec3_normalize(vec3_sub(v[1], v[0])), vec3_normalize(vec3_sub(v[2], v[0])));
+    if (vec3_max_abs(plain) > SLIVER) return vec3_normalize(plain);
+    wide3 corner = widen(v[0]);
+    wide3 across = wide_cross(wide_sub(widen(v[1]), corner), wide_sub(widen(v[2]), corner));
+    wide longest = wide_max_abs(across);
+    return longest > 0 ? vec3_normalize(narrow(across, 1 / longest)) : (vec3){0, 0, 0};
+}
+
 static bool prepare_triangle(zt_making *m) {
     vec3 v[3];
     for (int i = 0; i < 3; i++) {
@@ -116,11 +131,8 @@ static bool prepare_triangle(zt_making *m) {
         if (!finite3(v[i])) return false;
         m->primitive->triangle.vertices[i] = to_real3(v[i]);
     }
-    wide3 corner = widen(v[0]);
-    wide3 across = wide_cross(wide_sub(widen(v[1]), corner), wide_sub(widen(v[2]), corner));
-    wide longest = wide_max_abs(across);
-    if (!(longest > 0)) return false;
-    vec3 normal = vec3_normalize(narrow(across, 1 / longest));
+    vec3 normal = triangle_normal(v);
+    if (vec3_max_abs(normal) == 0) return false;
     m->primitive->kind = ZT_PRIMITIVE_TRIANGLE;
     m->surface->normal = to_real3(normal);
     m->surface->center = m->primitive->triangle.vertices[0];
