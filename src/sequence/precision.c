@@ -62,13 +62,11 @@ static void say_why(char *text, size_t size, const zt_accuracy *a, const zt_scen
     }
 }
 
-zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
-    zt_scene scene;
-    zt_ready ready;
-    ZT_TRY(zt_renderer_prepare(&ready, &scene, r, frame));
-    const zt_accuracy *a = &ready.accuracy;
+void zt_renderer_say_precision(zt_frame_precision *choice, const zt_renderer *r,
+                               const zt_ready *ready, const zt_scene *scene) {
+    const zt_accuracy *a = &ready->accuracy;
     char why[256];
-    say_why(why, sizeof why, a, &scene, r->animation);
+    say_why(why, sizeof why, a, scene, r->animation);
     if (r->precision == ZT_PRECISION_DOUBLE)
         snprintf(choice->text, sizeof choice->text, "double precision, as asked for");
     else if (r->precision == ZT_PRECISION_SINGLE)
@@ -76,11 +74,10 @@ zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int6
                  a->reason == ZT_ACCURACY_FINE ? ": " : ", though ", why);
     else
         snprintf(choice->text, sizeof choice->text, "%s precision: %s",
-                 ready.precision == ZT_PRECISION_SINGLE ? "single" : "double", why);
-    choice->precision = ready.precision;
-    int64_t things = (int64_t)scene.object_count + scene.light_count + 1;
+                 ready->precision == ZT_PRECISION_SINGLE ? "single" : "double", why);
+    choice->precision = ready->precision;
+    int64_t things = (int64_t)scene->object_count + scene->light_count + 1;
     choice->cause = ((int64_t)a->reason * things + a->object + 1) * things + a->other + 1;
-    return ZT_OK;
 }
 
 void zt_renderer_doubt(zt_renderer *r, const zt_ready *ready, const zt_scene *scene,

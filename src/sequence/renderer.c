@@ -60,13 +60,22 @@ void zt_renderer_close(zt_renderer **slot) {
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 
-zt_status zt_renderer_prepare(zt_ready *ready, zt_scene *scene, zt_renderer *r, int64_t frame) {
+/* The scene of a frame, and the same ready for its picture, in the frame's memory. */
+static zt_status prepare(zt_ready *ready, zt_scene *scene, zt_renderer *r, int64_t frame) {
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_animation_freeze(scene, r->animation, zt_rate_time(r->format.rate, frame),
                                &r->frame, r->listener));
     return zt_tracer_prepare(ready, scene, r->precision,
                              zt_lens_pixel(&scene->camera, r->format.height), r->meshes,
                              &r->frame);
+}
+
+zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
+    zt_scene scene;
+    zt_ready ready;
+    ZT_TRY(prepare(&ready, &scene, r, frame));
+    zt_renderer_say_precision(choice, r, &ready, &scene);
+    return ZT_OK;
 }
 
 zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
@@ -76,7 +85,7 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
     zt_scene scene;
     zt_ready ready;
     int64_t left_out_count;
-    ZT_TRY(zt_renderer_prepare(&ready, &scene, r, frame));
+    ZT_TRY(prepare(&ready, &scene, r, frame));
     zt_renderer_doubt(r, &ready, &scene, frame);
     zt_render_job job = {.scene = &ready,
                          .lens = zt_lens_prepare(&scene.camera, image->width, image->height),

@@ -22,9 +22,9 @@ struct zt_renderer {
     bool told_precision; /* that single precision, which was asked for, is not enough */
 };
 
-/* The scene of a frame, and the same ready for its picture, in the frame's memory. */
-zt_status zt_renderer_prepare(zt_ready *ready, zt_scene *scene, zt_renderer *renderer,
-                              int64_t frame);
+/* Says which precision a frame that is ready is rendered in, and why. */
+void zt_renderer_say_precision(zt_frame_precision *choice, const zt_renderer *renderer,
+                               const zt_ready *ready, const zt_scene *scene);
 
 /* Warns, the first time only, where single precision was asked for and is not enough. */
 void zt_renderer_doubt(zt_renderer *renderer, const zt_ready *ready, const zt_scene *scene,

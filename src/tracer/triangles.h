@@ -54,8 +54,7 @@ static inline bool about_one_side(real x0, real y0, real x1, real y1, real x2, r
 }
 
 /* Where ray number i meets triangle number k of a cluster, in (0, *t], `*triangle` being that
- * which is at *t already, or -1: sets both and returns true where this one counts before it.
- */
+ * which is at *t already, or -1: sets both and returns true where this one counts first. */
 static inline bool settle(real *t, int32_t *triangle, const zt_cluster *cluster, int k,
                           const zt_leaning_rays *rays, int i) {
     int axis = rays->axis[i], first = axis == 2 ? 0 : axis + 1,
