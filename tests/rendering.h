@@ -25,12 +25,14 @@ static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *sc
     assert_int_equal(zt_pool_open(&pool, threads), ZT_OK);
     assert_int_equal(zt_render_work_push(&work, &arena, threads), ZT_OK);
     assert_int_equal(zt_image_create(&image, width, height), ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&ready, scene, precision,
+    zt_exposure exposure = zt_exposure_of(scene);
+    zt_lens *lens;
+    assert_int_equal(zt_tracer_prepare(&ready, &exposure, precision,
                                        zt_lens_pixel(&scene->camera, height), meshes, &arena),
                      ZT_OK);
-    zt_render_job job = {.scene = &ready,
-                         .lens = zt_lens_prepare(&scene->camera, width, height),
-                         .samples = samples};
+    assert_int_equal(zt_lens_prepare(&lens, &exposure, width, height, &arena), ZT_OK);
+    zt_render_job job = {
+        .scene = &ready, .lens = lens, .sampling = {.min = samples, .max = samples}};
     assert_int_equal(zt_render(image, left_out, &job, work, pool), ZT_OK);
     zt_pool_close(&pool);
     zt_meshes_close(&meshes);

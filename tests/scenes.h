@@ -52,13 +52,17 @@ static inline void scene_triangle(test_scene *s, vec3 a, vec3 b, vec3 c, int32_t
 
 static inline zt_light *scene_point_light(test_scene *s, vec3 position, double intensity) {
     zt_light *light = &s->lights[s->scene.light_count++];
-    *light = (zt_light){ZT_LIGHT_POINT, {1, 1, 1}, intensity, position, true};
+    *light = (zt_light){.kind = ZT_LIGHT_POINT,
+                        .color = {1, 1, 1},
+                        .intensity = intensity,
+                        .position = position,
+                        .shadows = true};
     return light;
 }
 
 static inline void scene_ambient(test_scene *s, vec3 color, double intensity) {
     s->lights[s->scene.light_count++] =
-        (zt_light){ZT_LIGHT_AMBIENT, color, intensity, {0, 0, 0}, false};
+        (zt_light){.kind = ZT_LIGHT_AMBIENT, .color = color, .intensity = intensity};
 }
 
 /* Numbers that look random and are the same in each run. */

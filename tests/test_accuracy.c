@@ -27,11 +27,12 @@ static zt_ready ready_for(zt_precision precision) {
     zt_meshes *meshes;
     zt_arena arena = {0};
     zt_ready ready;
-    double pixel = 2 * tan(s.scene.camera.fov / 2) / HEIGHT;
+    zt_pixel pixel = {0, 2 * tan(s.scene.camera.fov / 2) / HEIGHT};
+    zt_exposure exposure = zt_exposure_of(&s.scene);
     assert_int_equal(
         zt_meshes_open(&meshes, s.scene.meshes, s.scene.mesh_count, 1, (zt_listener){0}),
         ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&ready, &s.scene, precision, pixel, meshes, &arena),
+    assert_int_equal(zt_tracer_prepare(&ready, &exposure, precision, pixel, meshes, &arena),
                      ZT_OK);
     zt_arena_free(&arena); /* what is looked at below is not in it */
     zt_meshes_close(&meshes);

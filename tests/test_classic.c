@@ -137,7 +137,12 @@ static void test_groups(void **state) {
 /* A room like the documents': three planes, two of them mirrors, spheres, two lamps. */
 static void make_room(test_scene *s) {
     scene_begin(s);
-    s->scene.camera = (zt_camera){{1, 2, 7}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0, 0}, true, .8, 0};
+    s->scene.camera = (zt_camera){.position = {1, 2, 7},
+                                  .look_at = {0, 1, 0},
+                                  .up = {0, 1, 0},
+                                  .rotation = {1, 0, 0, 0},
+                                  .aimed = true,
+                                  .fov = .8};
     scene_material(s, (vec3){.8, .8, .75}, .3);
     scene_material(s, (vec3){.8, .3, .2}, .2);
     scene_material(s, (vec3){.3, .5, .8}, 0);

@@ -183,8 +183,9 @@ static zt_tracer *prepare(const zt_scene *scene, zt_meshes *meshes, zt_arena *ar
     zt_tracer *tracer;
     zt_extent *extents;
     int32_t count;
-    assert_int_equal(ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, scene, meshes, arena),
-                     ZT_OK);
+    zt_exposure exposure = zt_exposure_of(scene);
+    assert_int_equal(
+        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, &exposure, meshes, arena), ZT_OK);
     assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }

@@ -82,7 +82,7 @@ static void assert_reads(const zt_scene *scene, zt_owner owner, const char *name
 /* Where a thing's fields are in a scene, told by the scene's own structs. */
 static int first_of(zt_owner owner) {
     if (owner >= ZT_OWNER_PLANE) return (int)(owner - ZT_OWNER_PLANE);
-    return owner == ZT_OWNER_POINT ? 1 : 0;
+    return owner >= ZT_OWNER_POINT ? 1 : 0;
 }
 
 static int bytes_that_differ(const void *a, const void *b, size_t size, size_t from,
@@ -102,7 +102,7 @@ static int strays(const zt_scene *scene, const zt_scene *rest, const zt_property
     size_t from[4] = {0}, to[4] = {0};
     int array = p->owner == ZT_OWNER_CAMERA     ? 0
                 : p->owner == ZT_OWNER_MATERIAL ? 1
-                : p->owner <= ZT_OWNER_POINT    ? 2
+                : p->owner < ZT_OWNER_PLANE     ? 2
                                                 : 3;
     static const size_t element[4] = {0, sizeof(zt_material), sizeof(zt_light),
                                       sizeof(zt_object)};

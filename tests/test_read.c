@@ -50,6 +50,8 @@ static void write_owner(char *text, size_t size, const zt_property *property,
         "camera: {}\nmaterials:\n  spare: {}\n  thing: { %s }\n",
         "camera: {}\nlights:\n  - ambient: {}\n  - ambient: { name: thing, %s }\n",
         "camera: {}\nlights:\n  - ambient: {}\n  - point: { name: thing, %s }\n",
+        "camera: {}\nlights:\n  - ambient: {}\n  - disk_light: { name: thing, %s }\n",
+        "camera: {}\nlights:\n  - ambient: {}\n  - rectangle_light: { name: thing, %s }\n",
         [ZT_OWNER_MESH] = "camera: {}\nobjects:\n  - group: { objects: [] }\n"
                           "  - mesh: { file: one.ply, name: thing, %s }\n",
         [ZT_OWNER_GROUP] = "camera: {}\nobjects:\n  - group: { objects: [] }\n"
@@ -245,7 +247,7 @@ static void defaults(void **state) {
     assert_int_equal(film->rate.den, 1);
     assert_int_equal(film->frame_count, 24);
     assert_int_equal(film->view, ZT_VIEW_SRGB);
-    assert_int_equal(film->samples, 1);
+    assert_int_equal(film->sampling.max, 1);
     const zt_scene *rest = &animation->rest;
     assert_int_equal(rest->reflection_depth, 4);
     assert_int_equal(rest->object_count + rest->light_count + rest->material_count, 0);
@@ -266,7 +268,7 @@ static void film_and_camera(void **state) {
     assert_int_equal(film->width, 65536);
     assert_int_equal(film->height, 1);
     assert_int_equal(film->view, ZT_VIEW_RAW);
-    assert_int_equal(film->samples, 16);
+    assert_int_equal(film->sampling.max, 16);
     assert_int_equal(animation->rest.reflection_depth, 0);
     assert_true(animation->rest.camera.aimed);
     assert_near(&animation->rest.camera.look_at.x, (const double[]){4, 5, 6}, 3);

@@ -8,6 +8,7 @@
 
 #include <zoetrope/image.h>
 #include <zoetrope/rate.h>
+#include <zoetrope/sampling.h>
 #include <zoetrope/status.h>
 
 #ifdef __cplusplus
@@ -16,6 +17,12 @@ extern "C" {
 
 typedef struct zt_animation zt_animation;
 
+/* When the shutter is open: from `open` to `close` after a frame's own time, as shares of the
+ * time from one frame to the next; the same where it opens for no time at all. */
+typedef struct zt_shutter {
+    double open, close;
+} zt_shutter;
+
 /* What the description says of the film as a whole. Frames are numbered 0 .. frame_count - 1.
  */
 typedef struct zt_film {
@@ -23,7 +30,8 @@ typedef struct zt_film {
     zt_rate rate;
     int64_t frame_count; /* at least 1 */
     zt_view view;
-    int samples; /* a pixel, at least 1 */
+    zt_sampling sampling;
+    zt_shutter shutter;
 } zt_film;
 
 /* How much there is, for a summary. */
@@ -31,7 +39,7 @@ typedef struct zt_contents {
     int plane_count, sphere_count, triangle_count, disk_count, box_count, cylinder_count,
         cone_count, torus_count, capsule_count, mesh_count, group_count;
     int64_t mesh_triangle_count; /* over all mesh objects, each use counted */
-    int ambient_light_count, point_light_count;
+    int ambient_light_count, point_light_count, disk_light_count, rectangle_light_count;
     int material_count;
     int track_count; /* properties that move */
 } zt_contents;

@@ -101,7 +101,12 @@ static void print_film(const zt_film *film) {
            film->frame_count - 1);
     printf("duration   %.6g s\n", zt_rate_time(film->rate, film->frame_count));
     printf("view       %s\n", film->view == ZT_VIEW_RAW ? "raw" : "srgb");
-    printf("samples    %d a pixel\n", film->samples);
+    if (film->sampling.min == film->sampling.max)
+        printf("samples    %d a pixel\n", film->sampling.max);
+    else
+        printf("samples    %d to %d a pixel, to an error of %g%s\n", film->sampling.min,
+               film->sampling.max, film->sampling.error,
+               film->sampling.edges ? ", at edges" : "");
 }
 
 static void print_things(const zt_contents *c) {
@@ -123,6 +128,8 @@ static void print_things(const zt_contents *c) {
     printf("lights     ");
     list(&lights, c->ambient_light_count, "ambient", "ambient");
     list(&lights, c->point_light_count, "point", "point");
+    list(&lights, c->disk_light_count, "disk", "disk");
+    list(&lights, c->rectangle_light_count, "rectangle", "rectangle");
     puts(*lights ? "" : "none");
     printf("materials  %d\n", c->material_count);
 }

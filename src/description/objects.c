@@ -118,7 +118,8 @@ static zt_status read_light(things *t, const zt_node *node) {
     zt_mistakes *mistakes = &t->reading->mistakes;
     item it;
     bool good;
-    if (!read_kind(&it.owner, mistakes, node, "light", ZT_OWNER_AMBIENT, ZT_OWNER_POINT))
+    if (!read_kind(&it.owner, mistakes, node, "light", ZT_OWNER_AMBIENT,
+                   ZT_OWNER_RECTANGLE_LIGHT))
         return ZT_OK;
     ZT_TRY(open_item(&it, &good, t, node, further));
     if (!good) return ZT_OK;

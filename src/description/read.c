@@ -1,105 +1,42 @@
 /* The top of a description: version, film, camera, and all that is put together below. */
 #include <zoetrope/animation.h>
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "description/constraints.h"
 #include "description/curves.h"
 #include "description/document.h"
+#include "description/film.h"
 #include "description/motion.h"
 #include "description/objects.h"
-#include "description/times.h"
 
 #define COUNT(array) (int)(sizeof(array) / sizeof *(array))
 
-enum {
-    LANGUAGE_VERSION = 1,
-    REFLECTIONS_MAX = 1000,
-    SAMPLES_MAX = 65536,
-    FRAME_COUNT_MAX = 100 * 1000 * 1000
-};
-
-/* ---- film -----------------------------------------------------------------------------------
- */
-
-static void read_size(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
-    int64_t size[2];
-    if (node->kind != ZT_NODE_LIST || node->count != 2) {
-        zt_expected(mistakes, node, "size", "a list of width and height");
-        return;
-    }
-    for (int i = 0; i < 2; i++)
-        if (!zt_read_integer(&size[i], mistakes, node->items[i], "size", 1, ZT_IMAGE_SIDE_MAX))
-            return;
-    film->width = (int)size[0];
-    film->height = (int)size[1];
-}
-
-/* The frames whose times are before the end; an end that is nearly a frame's time is meant so.
- */
-static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
-    zt_moment end;
-    if (!zt_read_moment(&end, mistakes, node, "duration", film->rate)) return;
-    if (end.unit == ZT_TIME_PERCENT) {
-        zt_mistake(mistakes, &node->place, "\"duration\" cannot be a share of itself");
-        return;
-    }
-    bool whole = end.unit == ZT_TIME_FRAMES;
-    double frames = whole ? (double)end.frame
-                          : end.number * (double)film->rate.num / (double)film->rate.den;
-    double nearest = round(frames);
-    frames = fabs(frames - nearest) <= 1e-6 ? nearest : ceil(frames);
-    if (whole ? end.frame < 1 : end.number <= 0)
-        zt_mistake(mistakes, &node->place, "\"duration\" is %s; a film has at least one frame",
-                   zt_show(node->text).text);
-    else if (frames > FRAME_COUNT_MAX)
-        zt_mistake(mistakes, &node->place,
-                   "\"duration\" is %s: %.0f frames; a film has at most %d",
-                   zt_show(node->text).text, frames, FRAME_COUNT_MAX);
-    else
-        film->frame_count = frames < 1 ? 1 : (int64_t)frames;
-}
-
-static zt_status read_film(zt_reading *reading, const zt_node *node) {
-    static const char *const names[] = {"size",    "rate",        "duration", "view",
-                                        "shading", "reflections", "samples"};
-    static const char *const views[] = {[ZT_VIEW_RAW] = "raw", [ZT_VIEW_SRGB] = "srgb"};
-    static const char *const shadings[] = {"classic"};
-    zt_mistakes *mistakes = &reading->mistakes;
-    zt_film *film = &reading->animation->film;
-    zt_fields fields;
-    ZT_TRY(zt_override_in(&node, reading, "film", names, COUNT(names)));
-    if (!zt_fields_open(&fields, mistakes, node, "film", names, COUNT(names))) return ZT_OK;
-    const zt_node *size = zt_field(&fields, "size"), *rate = zt_field(&fields, "rate"),
-                  *duration = zt_field_required(&fields, mistakes, "duration", &node->place),
-                  *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
-                  *reflections = zt_field(&fields, "reflections"),
-                  *samples = zt_field(&fields, "samples");
-    int choice;
-    int64_t number;
-    if (size) read_size(film, mistakes, size);
-    if (rate) zt_read_rate(&film->rate, mistakes, rate, "rate");
-    if (duration) read_duration(film, mistakes, duration);
-    if (view && zt_read_choice(&choice, mistakes, view, "view", views, COUNT(views)))
-        film->view = (zt_view)choice;
-    if (shading)
-        zt_read_choice(&choice, mistakes, shading, "shading", shadings, COUNT(shadings));
-    if (reflections &&
-        zt_read_integer(&number, mistakes, reflections, "reflections", 0, REFLECTIONS_MAX))
-        reading->animation->rest.reflection_depth = (int32_t)number;
-    if (samples && zt_read_integer(&number, mistakes, samples, "samples", 1, SAMPLES_MAX))
-        film->samples = (int)number;
-    return ZT_OK;
-}
+enum { LANGUAGE_VERSION = 1, BLADES_MAX = 64 };
 
 /* ---- camera ---------------------------------------------------------------------------------
  */
 
+/* What of a lens does not move. */
+static void read_lens(zt_camera *camera, zt_mistakes *mistakes, const zt_fields *fields) {
+    static const char *const lenses[ZT_LENS_KIND_COUNT] = {"perspective", "orthographic",
+                                                           "equirectangular"};
+    const zt_node *lens = zt_field(fields, "lens"), *blades = zt_field(fields, "blades");
+    int choice;
+    int64_t number;
+    if (lens && zt_read_choice(&choice, mistakes, lens, "lens", lenses, COUNT(lenses)))
+        camera->lens = (zt_lens_kind)choice;
+    if (blades && zt_read_integer(&number, mistakes, blades, "blades", 0, BLADES_MAX))
+        camera->blades = (int32_t)number;
+}
+
 static zt_status read_camera(zt_reading *reading, const zt_node *node) {
     const char *names[ZT_FIELD_NAMES_MAX];
+    zt_camera *camera = &reading->animation->rest.camera;
     int name_count = zt_motion_names(names, ZT_OWNER_CAMERA);
+    names[name_count++] = "lens";
+    names[name_count++] = "blades";
     zt_fields fields;
     ZT_TRY(zt_override_in(&node, reading, "camera", names, name_count));
     if (!zt_fields_open(&fields, &reading->mistakes, node, "camera", names, name_count))
@@ -107,7 +44,9 @@ static zt_status read_camera(zt_reading *reading, const zt_node *node) {
     ZT_TRY(zt_motion_read(reading, &fields, ZT_OWNER_CAMERA, 0, "camera", &node->place));
     const zt_node *aim = zt_field(&fields, "look_at"),
                   *rotation = zt_field(&fields, "rotation");
-    reading->animation->rest.camera.aimed = aim != NULL;
+    camera->aimed = aim != NULL;
+    camera->focused = zt_field(&fields, "focus_on") != NULL;
+    read_lens(camera, &reading->mistakes, &fields);
     if (aim && rotation)
         zt_mistake(&reading->mistakes, &rotation->place,
                    "a camera has either \"look_at\" or \"rotation\"");
@@ -167,7 +106,7 @@ static zt_status read_root(zt_reading *reading, const zt_node *root, const char 
                         LANGUAGE_VERSION);
     const zt_node *film = zt_field_required(&fields, mistakes, "film", &root->place);
     const zt_node *camera = zt_field_required(&fields, mistakes, "camera", &root->place);
-    if (film) ZT_TRY(read_film(reading, film));
+    if (film) ZT_TRY(zt_film_read(reading, film));
     ZT_TRY(read_names(reading, &fields));
     if (camera) ZT_TRY(read_camera(reading, camera));
     ZT_TRY(zt_objects_read(reading, directory, zt_field(&fields, "materials"),
@@ -206,13 +145,7 @@ zt_status zt_animation_read(zt_animation **out, const char *path, const zt_overr
     zt_reading reading = {.mistakes.listener = listener, .temporary = &temporary};
     zt_animation *animation = reading.animation = calloc(1, sizeof *animation);
     if (!animation) return ZT_EMEMORY;
-    animation->film = (zt_film){.width = 1280,
-                                .height = 720,
-                                .rate = {24, 1},
-                                .frame_count = 1,
-                                .view = ZT_VIEW_SRGB,
-                                .samples = 1};
-    animation->rest.reflection_depth = 4;
+    zt_film_rest(animation);
     zt_status status = read_all(&reading, path, overrides, override_count);
     zt_arena_free(&temporary);
     if (status == ZT_OK || status == ZT_EDESCRIPTION) {

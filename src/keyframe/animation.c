@@ -161,11 +161,20 @@ zt_contents zt_animation_contents(const zt_animation *animation) {
         case ZT_SHAPE_COUNT:
             break;
         }
-    for (int32_t i = 0; i < scene->light_count; i++)
-        if (scene->lights[i].kind == ZT_LIGHT_AMBIENT)
+    for (int32_t i = 0; i < scene->light_count; i++) switch (scene->lights[i].kind) {
+        case ZT_LIGHT_AMBIENT:
             contents.ambient_light_count++;
-        else
+            break;
+        case ZT_LIGHT_POINT:
             contents.point_light_count++;
+            break;
+        case ZT_LIGHT_DISK:
+            contents.disk_light_count++;
+            break;
+        case ZT_LIGHT_RECTANGLE:
+            contents.rectangle_light_count++;
+            break;
+        }
     return contents;
 }
 

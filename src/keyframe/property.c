@@ -22,6 +22,14 @@ const zt_property zt_properties[] = {
     {ZT_OWNER_CAMERA, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, CAMERA(rotation), "instead of look_at: turned from looking along -z"},
     {ZT_OWNER_CAMERA, "roll", ZT_VALUE_ANGLE, "deg", -NONE, NONE, 0, CAMERA(roll), "turns it around its view; the picture turns clockwise"},
     {ZT_OWNER_CAMERA, "fov", ZT_VALUE_ANGLE, "deg", 1e-6, 179.9, 0, CAMERA(fov), "the angle that the picture's height spans"},
+    {ZT_OWNER_CAMERA, "focal_length", ZT_VALUE_NUMBER, "mm", 0, NONE, 0, CAMERA(focal_length), "instead of fov: the lens's; 0 where fov counts"},
+    {ZT_OWNER_CAMERA, "sensor_height", ZT_VALUE_NUMBER, "mm", 1e-6, NONE, 0, CAMERA(sensor_height), "what focal_length is measured against"},
+    {ZT_OWNER_CAMERA, "height", ZT_VALUE_NUMBER, NULL, 1e-12, NONE, 0, CAMERA(height), "how much an orthographic lens shows from bottom to top"},
+    {ZT_OWNER_CAMERA, "aperture", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, CAMERA(aperture), "the radius of the lens's opening; 0: all is sharp"},
+    {ZT_OWNER_CAMERA, "f_number", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, CAMERA(f_number), "instead of aperture, for scenes in metres; 0: none"},
+    {ZT_OWNER_CAMERA, "focus_distance", ZT_VALUE_NUMBER, NULL, 1e-12, NONE, 0, CAMERA(focus_distance), "where the picture is sharp, along the view"},
+    {ZT_OWNER_CAMERA, "focus_on", ZT_VALUE_VECTOR, NULL, -NONE, NONE, 0, CAMERA(focus_on), "instead of focus_distance: a point that is sharp"},
+    {ZT_OWNER_CAMERA, "blade_rotation", ZT_VALUE_ANGLE, "deg", -NONE, NONE, 0, CAMERA(blade_rotation), "turns the aperture's blades"},
 
     {ZT_OWNER_MATERIAL, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, MATERIAL(color), "the share of light that is thrown back"},
     {ZT_OWNER_MATERIAL, "reflectivity", ZT_VALUE_NUMBER, NULL, 0, 1, 0, MATERIAL(reflectivity), "how much of what the mirror shows is added"},
@@ -37,6 +45,22 @@ const zt_property zt_properties[] = {
     {ZT_OWNER_POINT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, LIGHT(color), "the light's color"},
     {ZT_OWNER_POINT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(intensity), "a factor to the color, at distance 1"},
     {ZT_OWNER_POINT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, 0, LIGHT(shadows), "whether objects keep its light off"},
+    {ZT_OWNER_POINT, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(radius), "of the ball that shines, for soft shadows; 0: a point"},
+
+    {ZT_OWNER_DISK_LIGHT, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, LIGHT(position), "the middle"},
+    {ZT_OWNER_DISK_LIGHT, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, LIGHT(rotation), "turned from shining along -z"},
+    {ZT_OWNER_DISK_LIGHT, "radius", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, LIGHT(radius), "the radius"},
+    {ZT_OWNER_DISK_LIGHT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, LIGHT(color), "the light's color"},
+    {ZT_OWNER_DISK_LIGHT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(intensity), "a factor to the color, at distance 1 straight ahead"},
+    {ZT_OWNER_DISK_LIGHT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, 0, LIGHT(shadows), "whether objects keep its light off"},
+
+    {ZT_OWNER_RECTANGLE_LIGHT, "position", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED, LIGHT(position), "the middle"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "rotation", ZT_VALUE_ROTATION, "deg", -NONE, NONE, 0, LIGHT(rotation), "turned from shining along -z, with y up"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "width", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, LIGHT(width), "how long it is along its x"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "height", ZT_VALUE_NUMBER, NULL, 0, NONE, REQUIRED, LIGHT(height), "how long it is along its y"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "color", ZT_VALUE_COLOR, NULL, 0, NONE, 0, LIGHT(color), "the light's color"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "intensity", ZT_VALUE_NUMBER, NULL, 0, NONE, 0, LIGHT(intensity), "a factor to the color, at distance 1 straight ahead"},
+    {ZT_OWNER_RECTANGLE_LIGHT, "shadows", ZT_VALUE_SWITCH, NULL, 0, 1, 0, LIGHT(shadows), "whether objects keep its light off"},
 
     {ZT_OWNER_PLANE, "normal", ZT_VALUE_VECTOR, NULL, -NONE, NONE, REQUIRED | DIRECTION, OBJECT(plane.normal), "what is up from the plane; any length"},
     {ZT_OWNER_PLANE, "distance", ZT_VALUE_NUMBER, NULL, -NONE, NONE, 0, OBJECT(plane.distance), "from the origin to the plane, along the normal"},
@@ -88,8 +112,9 @@ const int zt_property_count = sizeof zt_properties / sizeof zt_properties[0];
 
 const char *zt_owner_name(zt_owner owner) {
     static const char *const names[ZT_OWNER_COUNT] = {
-        "camera", "material", "ambient", "point", "plane",   "sphere", "triangle", "disk",
-        "box",    "cylinder", "cone",    "torus", "capsule", "mesh",   "group"};
+        "camera", "material", "ambient",  "point", "disk_light", "rectangle_light",
+        "plane",  "sphere",   "triangle", "disk",  "box",        "cylinder",
+        "cone",   "torus",    "capsule",  "mesh",  "group"};
     return names[owner];
 }
 
@@ -127,6 +152,8 @@ static char *owner_struct(const zt_scene *scene, zt_owner owner, int32_t index) 
         return (char *)&scene->materials[index];
     case ZT_OWNER_AMBIENT:
     case ZT_OWNER_POINT:
+    case ZT_OWNER_DISK_LIGHT:
+    case ZT_OWNER_RECTANGLE_LIGHT:
         return (char *)&scene->lights[index];
     default:
         return (char *)&scene->objects[index];
@@ -157,7 +184,10 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
     case ZT_OWNER_CAMERA:
         scene->camera = (zt_camera){.up = {0, 1, 0},
                                     .rotation = {1, 0, 0, 0},
-                                    .fov = 40 * (3.14159265358979323846 / 180)};
+                                    .fov = 40 * (3.14159265358979323846 / 180),
+                                    .sensor_height = 24,
+                                    .height = 2,
+                                    .focus_distance = 1};
         break;
     case ZT_OWNER_MATERIAL:
         scene->materials[index] = (zt_material){
@@ -165,10 +195,13 @@ void zt_property_rest(zt_scene *scene, zt_owner owner, int32_t index) {
         break;
     case ZT_OWNER_AMBIENT:
     case ZT_OWNER_POINT:
+    case ZT_OWNER_DISK_LIGHT:
+    case ZT_OWNER_RECTANGLE_LIGHT:
         scene->lights[index] =
-            (zt_light){.kind = owner == ZT_OWNER_POINT ? ZT_LIGHT_POINT : ZT_LIGHT_AMBIENT,
+            (zt_light){.kind = (zt_light_kind)(ZT_LIGHT_AMBIENT + (owner - ZT_OWNER_AMBIENT)),
                        .color = {1, 1, 1},
                        .intensity = 1,
+                       .rotation = still.rotation,
                        .shadows = true};
         break;
     default: {

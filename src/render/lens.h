@@ -2,23 +2,29 @@
 #ifndef ZT_RENDER_LENS_H
 #define ZT_RENDER_LENS_H
 
-#include "scene/scene.h"
+#include "base/arena.h"
+#include "scene/exposure.h"
 #include "tracer/kernel.h"
 
-/* A camera made ready for a picture of a given size: the ray through the place (x, y), in
- * pixels from the top left corner, runs from the origin along corner + x right + y down. */
-typedef struct zt_lens {
-    vec3 corner, right, down;
-} zt_lens;
+/* A camera made ready for a picture of a given size. Lives in the arena that it was made in. */
+typedef struct zt_lens zt_lens;
 
-/* The width of a pixel in the middle of the picture, at distance 1. */
-double zt_lens_pixel(const zt_camera *camera, int height);
+/* How wide a pixel of the picture is; square. */
+zt_pixel zt_lens_pixel(const zt_camera *camera, int height);
 
-/* A perspective lens whose `fov` spans the height of the picture; pixels are square. */
-zt_lens zt_lens_prepare(const zt_camera *camera, int width, int height);
+/* ZT_EMEMORY. */
+zt_status zt_lens_prepare(zt_lens **lens, const zt_exposure *exposure, int width, int height,
+                          zt_arena *arena);
 
-/* Makes the batch's rays the ones through the places (x[i], y[i]), `count` of them. */
+/* Whether rays ask where in the opening of the lens they pass, and when. */
+bool zt_lens_has_aperture(const zt_lens *lens);
+bool zt_lens_moves(const zt_lens *lens);
+
+/* Makes the batch's rays the ones through the places (x[i], y[i]) of the picture, in pixels
+ * from its top left corner, `count` of them; at their times, which are read where the lens
+ * moves; and through the point of its opening that (u[i], v[i]) of the unit square stand for,
+ * read where it has one. */
 void zt_lens_rays(zt_rays *rays, const zt_lens *lens, const float *x, const float *y,
-                  int count);
+                  const float *u, const float *v, int count);
 
 #endif

@@ -17,11 +17,13 @@ struct zt_render_work {
         /* The pixels of a block, and what their samples add up to. */
         alignas(64) int32_t column[ZT_BATCH];
         alignas(64) int32_t row[ZT_BATCH];
-        zt_pixel_seeds seeds[ZT_BATCH];
+        uint32_t place_key[ZT_BATCH],
+            key[ZT_BATCH]; /* of where they are sampled, and all else */
         zt_radiance sum;
         alignas(64) int32_t taken[ZT_BATCH]; /* samples in the sum */
         /* A batch: some samples of each pixel, one after the other. */
         float x[ZT_BATCH], y[ZT_BATCH]; /* places in the picture, pixels */
+        float u[ZT_BATCH], v[ZT_BATCH]; /* and in the lens */
         zt_rays rays;
         zt_radiance light;
         void *kernel; /* what it works with */
@@ -73,8 +75,10 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
 
 /* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are
  * left out. */
-static int list_pixels(struct render_thread *own, const zt_render_work *work, tile area,
-                       int first, int most, bool seeds) {
+static int list_pixels(struct render_thread *own, const frame *f, tile area, int first,
+                       int most) {
+    const zt_render_work *work = f->work;
+    const zt_render_job *job = f->job;
     int32_t *restrict column = own->column, *restrict row = own->row;
     int count = most;
     if (area.width == TILE_SIDE && area.height == TILE_SIDE) {
@@ -90,7 +94,11 @@ static int list_pixels(struct render_thread *own, const zt_render_work *work, ti
             count += work->column[i] < area.width && work->row[i] < area.height;
         }
     }
-    for (int i = 0; seeds && i < count; i++) own->seeds[i] = zt_sample_seeds(column[i], row[i]);
+    bool keys = job->sampling.max > 1 || job->scene->moves || job->scene->random;
+    for (int i = 0; keys && i < count; i++) {
+        own->place_key[i] = zt_sample_key(job->place_key, column[i], row[i]);
+        own->key[i] = zt_sample_key(job->frame_key, column[i], row[i]);
+    }
     return count;
 }
 
@@ -144,21 +152,43 @@ ZT_CLONES static void fill_pixels(float *restrict pixels, int width,
     }
 }
 
+/* Where and when sample number `sample` of each pixel is, from `first` in the batch on. A
+ * single one is in the middle. */
+static void take_samples(struct render_thread *own, const zt_render_job *job, int first,
+                         int count, int sample) {
+    float *x = own->x + first, *y = own->y + first, unused[ZT_BATCH];
+    bool single = job->sampling.max == 1;
+    if (!single)
+        zt_sample_points(x, y, own->place_key, ZT_DIMENSION_PIXEL, (uint32_t)sample, count);
+    for (int i = 0; i < count; i++) {
+        x[i] = (float)own->column[i] + (single ? 0.5f : x[i]);
+        y[i] = (float)own->row[i] + (single ? 0.5f : y[i]);
+    }
+    if (zt_lens_has_aperture(job->lens))
+        zt_sample_points(own->u + first, own->v + first, own->key, ZT_DIMENSION_LENS,
+                         (uint32_t)sample, count);
+    if (job->scene->moves || zt_lens_moves(job->lens))
+        zt_sample_points(own->rays.time + first, unused, own->key, ZT_DIMENSION_TIME,
+                         (uint32_t)sample, count);
+    for (int i = 0; job->scene->random && i < count; i++) {
+        own->rays.key[first + i] = own->key[i];
+        own->rays.sample[first + i] = (uint32_t)sample;
+    }
+}
+
 /* All samples of some pixels of a tile, as many of each in a batch as there is room for. */
 static bool render_block(frame *f, struct render_thread *own, tile area, int first, int most) {
     const zt_render_job *job = f->job;
-    int left_out = 0, count = list_pixels(own, f->work, area, first, most, job->samples > 1);
+    int left_out = 0, count = list_pixels(own, f, area, first, most);
     if (count == 0) return true;
     memset(&own->sum, 0, sizeof own->sum);
     memset(own->taken, 0, sizeof own->taken);
     int together = ZT_BATCH / count;
-    for (int done = 0; done < job->samples; done += together) {
+    for (int done = 0; done < job->sampling.max; done += together) {
         if (job->stopped && job->stopped(job->user)) return false;
-        int now = min_int(together, job->samples - done);
-        for (int k = 0; k < now; k++)
-            zt_sample_pixels(own->x + k * count, own->y + k * count, own->column, own->row,
-                             own->seeds, count, done + k, job->samples);
-        zt_lens_rays(&own->rays, &job->lens, own->x, own->y, now * count);
+        int now = min_int(together, job->sampling.max - done);
+        for (int k = 0; k < now; k++) take_samples(own, job, k * count, count, done + k);
+        zt_lens_rays(&own->rays, job->lens, own->x, own->y, own->u, own->v, now * count);
         job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
         for (int k = 0; k < now; k++)
             left_out += add_samples(&own->sum, own->taken, &own->light, k * count, count);
@@ -178,7 +208,7 @@ static bool render_tile(frame *f, int index, int worker) {
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
                  min_int(TILE_SIDE, f->image->height - y)};
-    int most = block_size(f->job->samples);
+    int most = block_size(f->job->sampling.max);
     for (int first = 0; first < ZT_BATCH; first += most)
         if (!render_block(f, &f->work->threads[worker], area, first, most)) return false;
     return true;

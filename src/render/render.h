@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <zoetrope/image.h>
+#include <zoetrope/sampling.h>
 
 #include "base/arena.h"
 #include "base/pool.h"
@@ -18,8 +19,11 @@ zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread
 
 typedef struct zt_render_job {
     const zt_ready *scene;
-    zt_lens lens;
-    int samples;                 /* a pixel, at least 1 */
+    const zt_lens *lens;
+    zt_sampling sampling;
+    /* What random numbers are keyed by: where in their pixels samples are taken, and all else.
+     */
+    uint64_t place_key, frame_key;
     bool (*stopped)(void *user); /* asked before each tile, from any thread; may be NULL */
     void *user;
 } zt_render_job;

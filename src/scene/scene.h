@@ -113,15 +113,33 @@ typedef struct zt_material {
     vec3 pattern_direction; /* of stripes; any length but zero */
 } zt_material;
 
-typedef enum zt_light_kind { ZT_LIGHT_AMBIENT, ZT_LIGHT_POINT } zt_light_kind;
+typedef enum zt_light_kind {
+    ZT_LIGHT_AMBIENT,
+    ZT_LIGHT_POINT,
+    ZT_LIGHT_DISK,
+    ZT_LIGHT_RECTANGLE
+} zt_light_kind;
 
+/* All but ambient lights are somewhere. A point light with a radius is a ball that shines alike
+ * from all of its surface; disks and rectangles shine to one side, along their own -z, and do
+ * so less the further from there. All give, where they are faced from afar, intensity / d^2. */
 typedef struct zt_light {
     zt_light_kind kind;
     vec3 color;
     double intensity;
-    vec3 position; /* of ZT_LIGHT_POINT, as is the next */
+    vec3 position; /* the middle */
     bool shadows;
+    double radius;        /* of points (0: a point indeed) and disks */
+    quat rotation;        /* of disks and rectangles */
+    double width, height; /* of rectangles: along their own x and y */
 } zt_light;
+
+typedef enum zt_lens_kind {
+    ZT_LENS_PERSPECTIVE,
+    ZT_LENS_ORTHOGRAPHIC,
+    ZT_LENS_EQUIRECTANGULAR, /* all around: the picture's middle is ahead */
+    ZT_LENS_KIND_COUNT
+} zt_lens_kind;
 
 /* Looks along its own -z with +y up; `aimed` ones turn towards look_at instead of by rotation.
  * Either way it is then rolled around its view, counterclockwise seen from behind. */
@@ -129,8 +147,21 @@ typedef struct zt_camera {
     vec3 position, look_at, up;
     quat rotation;
     bool aimed;
-    double fov; /* the vertical opening */
     double roll;
+    zt_lens_kind lens;
+    double fov;           /* the vertical opening, where there is no focal length */
+    double focal_length;  /* millimetres; 0: `fov` counts */
+    double sensor_height; /* millimetres */
+    double height;        /* of an orthographic picture, in the unit of space */
+    /* The opening that light comes through: its radius in the unit of space; or, where there is
+     * an f-number, what follows from it and the focal length, a unit being a metre. 0: a
+     * pinhole, all is sharp. */
+    double aperture, f_number;
+    double focus_distance; /* along the view; of `focused` ones that of the point focus_on */
+    vec3 focus_on;
+    bool focused;
+    int32_t blades; /* of the aperture: a regular polygon's corners; below 3: round */
+    double blade_rotation;
 } zt_camera;
 
 typedef struct zt_scene {

@@ -6,6 +6,7 @@
 
 #include "base/diag.h"
 #include "keyframe/animation.h"
+#include "sequence/shutter.h"
 
 enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
 
@@ -36,7 +37,12 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     r->animation = animation;
     r->listener = listener;
     r->precision = settings->precision;
-    r->samples = settings->samples ? settings->samples : film->samples;
+    r->sampling = film->sampling;
+    if (settings->samples) {
+        r->sampling.min = r->sampling.max = settings->samples;
+        r->sampling.error = 0;
+        r->sampling.edges = false;
+    }
     r->format = (zt_output_format){settings->width ? settings->width : film->width,
                                    settings->height ? settings->height : film->height,
                                    film->rate, film->view, 0};
@@ -60,21 +66,31 @@ void zt_renderer_close(zt_renderer **slot) {
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 
-/* The scene of a frame, and the same ready for its picture, in the frame's memory. */
-static zt_status prepare(zt_ready *ready, zt_scene *scene, zt_renderer *r, int64_t frame) {
+/* A frame on its way: what the scene is meanwhile, the same ready for rays, and the lens. In
+ * the frame's memory. */
+typedef struct taking {
+    zt_exposure exposure;
+    zt_ready ready;
+    zt_lens *lens;
+    uint64_t place_key, frame_key;
+} taking;
+
+static zt_status prepare(taking *t, zt_renderer *r, int64_t frame) {
     zt_arena_reset(&r->frame);
-    ZT_TRY(zt_animation_freeze(scene, r->animation, zt_rate_time(r->format.rate, frame),
-                               &r->frame, r->listener));
-    return zt_tracer_prepare(ready, scene, r->precision,
-                             zt_lens_pixel(&scene->camera, r->format.height), r->meshes,
-                             &r->frame);
+    ZT_TRY(zt_shutter_expose(&t->exposure, r->animation, frame, r->format.height, &r->frame,
+                             r->listener));
+    ZT_TRY(zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
+                             zt_lens_pixel(&t->exposure.moments[0].camera, r->format.height),
+                             r->meshes, &r->frame));
+    zt_shutter_keys(&t->place_key, &t->frame_key, &t->exposure, &r->sampling);
+    return zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height,
+                           &r->frame);
 }
 
 zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
-    zt_scene scene;
-    zt_ready ready;
-    ZT_TRY(prepare(&ready, &scene, r, frame));
-    zt_renderer_say_precision(choice, r, &ready, &scene);
+    taking t;
+    ZT_TRY(prepare(&t, r, frame));
+    zt_renderer_say_precision(choice, r, &t.ready, t.exposure.moments);
     return ZT_OK;
 }
 
@@ -82,14 +98,15 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
                             const zt_watcher *watcher) {
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
-    zt_scene scene;
-    zt_ready ready;
+    taking t;
     int64_t left_out_count;
-    ZT_TRY(prepare(&ready, &scene, r, frame));
-    zt_renderer_doubt(r, &ready, &scene, frame);
-    zt_render_job job = {.scene = &ready,
-                         .lens = zt_lens_prepare(&scene.camera, image->width, image->height),
-                         .samples = r->samples,
+    ZT_TRY(prepare(&t, r, frame));
+    zt_renderer_doubt(r, &t.ready, t.exposure.moments, frame);
+    zt_render_job job = {.scene = &t.ready,
+                         .lens = t.lens,
+                         .sampling = r->sampling,
+                         .place_key = t.place_key,
+                         .frame_key = t.frame_key,
                          .stopped = watcher ? watcher->stopped : NULL,
                          .user = watcher ? watcher->user : NULL};
     ZT_TRY(zt_render(image, &left_out_count, &job, r->work, r->pool));

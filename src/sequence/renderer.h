@@ -12,7 +12,7 @@
 struct zt_renderer {
     const zt_animation *animation;
     zt_output_format format;
-    int samples;
+    zt_sampling sampling;
     zt_precision precision;
     zt_listener listener;
     zt_pool *pool;

@@ -28,11 +28,11 @@ enum { MIRRORS_MAX = 64 };
 #define SAME 0x1p-44
 enum { TWINS_MAX = 8192, SURFACES_MAX = 7, PAIRS_MAX = 20000 };
 
-static zt_accuracy judge_one(const zt_extent *e, double pixel) {
+static zt_accuracy judge_one(const zt_extent *e, zt_pixel pixel) {
     zt_accuracy a = {.object = e->object,
                      .other = -1,
                      .wrong = WRONG * e->stretch * e->size,
-                     .seen = SEEN * pixel * e->near,
+                     .seen = SEEN * (pixel.width + pixel.angle * e->near),
                      .distance = e->near,
                      .number = e->size};
     if (!(e->stretch < STRETCH_MAX)) {
@@ -143,7 +143,7 @@ bool zt_accuracy_twins(const zt_extent *extents, int32_t count, double most) {
 }
 
 zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_scene *scene,
-                              double pixel) {
+                              zt_pixel pixel) {
     bool mirrors = false;
     for (int32_t i = 0; i < scene->material_count; i++)
         mirrors |= scene->materials[i].reflectivity > 0;

@@ -31,6 +31,11 @@ typedef struct zt_accuracy {
                       more one way than another it is stretched */
 } zt_accuracy;
 
+/* How wide a pixel is at a distance d: width + angle d. */
+typedef struct zt_pixel {
+    double width, angle;
+} zt_pixel;
+
 /* One surface as it was made ready, in the space relative to the camera, in double precision.
  */
 typedef struct zt_extent {
@@ -53,9 +58,8 @@ typedef struct zt_extent {
     int32_t lamp_light;
 } zt_extent;
 
-/* `pixel` is the width of a pixel at distance 1. */
 zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_scene *scene,
-                              double pixel);
+                              zt_pixel pixel);
 
 /* Whether two surfaces lie on each other: as near as `most` of their size. */
 bool zt_accuracy_twins(const zt_extent *extents, int32_t count, double most);

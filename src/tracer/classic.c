@@ -82,8 +82,33 @@ static void begin(work *restrict w, const zt_rays *restrict given) {
     }
 }
 
+/* When each ray is: on its way from which moment to the next, and how far. What steps is at one
+ * moment or the other. */
+static void begin_moments(zt_origins *from, const zt_tracer *tracer, const float *time,
+                          int count) {
+    const zt_exposure *e = tracer->exposure;
+    for (int i = 0; i < zt_batch_padded(count); i++) {
+        double t = i < count ? fmin(fmax((double)time[i], 0), 1) : 0;
+        int cell = (int)(t * ZT_TIME_CELLS);
+        int m = tracer->moment_at[cell < ZT_TIME_CELLS ? cell : ZT_TIME_CELLS - 1];
+        double between = (t - e->times[m]) / (e->times[m + 1] - e->times[m]);
+        from->moment[i] = m;
+        from->between[i] = (real)(e->steps[m] ? (between < 0.5 ? 0 : 1) : between);
+    }
+}
+
+/* Moves what ray i carries through time to place k; numbers in `list` are no less than their
+ * places. */
+static void move_moments(zt_origins *restrict from, const int32_t *restrict list, int count) {
+    WIDE_LOOP for (int k = 0; k < count; k++) {
+        int32_t i = list[k];
+        from->moment[k] = from->moment[i];
+        from->between[k] = from->between[i];
+    }
+}
+
 /* Lets go of the rays that hit nothing. */
-static void keep_hits(work *restrict w) {
+static void keep_hits(work *restrict w, const zt_tracer *tracer) {
     zt_batch *restrict rays = &w->rays;
     zt_origins *restrict from = &w->from;
     zt_points *restrict p = &w->points;
@@ -93,6 +118,7 @@ static void keep_hits(work *restrict w) {
     rays->count = list_wanted(w->list, w->wanted, count);
     p->moved = true;
     padded = zt_batch_padded(rays->count);
+    if (tracer->moves) move_moments(from, w->list, padded);
     /* Numbers in the list are no less than their places, so that moving down overwrites nothing
      * that is still wanted. */
     WIDE_LOOP for (int k = 0; k < padded; k++) {
@@ -220,7 +246,7 @@ static inline void mirror_ray(work *restrict w, int k) {
 }
 
 /* Makes the mirrored rays of the points that reflect the next batch. */
-static void mirror(work *restrict w) {
+static void mirror(work *restrict w, const zt_tracer *tracer) {
     zt_batch *restrict rays = &w->rays;
     zt_origins *restrict from = &w->from;
     zt_points *restrict p = &w->points;
@@ -238,6 +264,7 @@ static void mirror(work *restrict w) {
     rays->count = list_wanted(w->list, w->wanted, p->count);
     p->moved = true;
     padded = zt_batch_padded(rays->count);
+    if (tracer->moves) move_moments(from, w->list, padded);
     WIDE_LOOP for (int k = 0; k < padded; k++) { /* moving down, as in keep_hits */
         int32_t i = w->list[k];
         from->x[k] = from->x[i];
@@ -265,26 +292,27 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
     work *w = memory;
     memset(light, 0, sizeof *light);
     begin(w, given);
+    if (tracer->moves) begin_moments(&w->from, tracer, given->time, given->count);
     zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     w->points.source = -1;
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
         zt_bundle bundle = bundle_around(w, around, w->points.source);
         intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
-        keep_hits(w);
+        keep_hits(w, tracer);
         if (w->rays.count == 0) return;
         find_points(&w->points, &w->rays, tracer);
         around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
         light_points(w, tracer, &around);
         deliver(light, w);
         if (depth >= tracer->reflection_depth) return;
-        mirror(w);
+        mirror(w, tracer);
     }
 }
 
 /* ---- probes ---------------------------------------------------------------------------------
  */
 
-static void begin_probes(work *w, const zt_probe *probes, int count) {
+static void begin_probes(work *w, const zt_tracer *tracer, const zt_probe *probes, int count) {
     zt_rays given = {.count = count};
     for (int i = 0; i < count; i++) {
         given.ox[i] = probes[i].origin.x;
@@ -294,7 +322,9 @@ static void begin_probes(work *w, const zt_probe *probes, int count) {
         given.dy[i] = probes[i].direction.y;
         given.dz[i] = probes[i].direction.z;
     }
+    for (int i = 0; i < count; i++) given.time[i] = (float)probes[i].time;
     begin(w, &given);
+    if (tracer->moves) begin_moments(&w->from, tracer, given.time, count);
     for (int i = 0; i < count; i++) w->from.source[i] = probes[i].source;
 }
 
@@ -332,14 +362,14 @@ static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer) {
 
 static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *memory) {
     work *w = memory;
-    begin_probes(w, probes, count);
+    begin_probes(w, tracer, probes, count);
     for (int i = 0; i < count; i++) {
         probes[i].object = probes[i].part = -1;
         probes[i].lit = 0;
     }
     zt_bundle bundle = bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
     intersect(&w->rays, &bundle, tracer, ZT_BVH_SCATTERED);
-    keep_hits(w);
+    keep_hits(w, tracer);
     if (w->rays.count == 0) return;
     find_points(&w->points, &w->rays, tracer);
     tell_hits(probes, w, tracer);

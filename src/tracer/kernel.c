@@ -17,7 +17,7 @@ extern KERNELS(avx512);
 
 /* Compiled by ZT_REAL_NAME in tracer/prepare.c, which is of one precision at a time. */
 typedef zt_status prepare(zt_tracer **tracer, zt_extent **extents, int32_t *extent_count,
-                          const zt_scene *scene, zt_meshes *meshes, zt_arena *arena);
+                          const zt_exposure *exposure, zt_meshes *meshes, zt_arena *arena);
 prepare zt_prepare_single, zt_prepare_double;
 typedef zt_status prepare_search(zt_tracer *tracer, zt_meshes *meshes, zt_arena *arena);
 prepare_search zt_prepare_search_single, zt_prepare_search_double;
@@ -39,21 +39,22 @@ static const zt_kernel *select_kernel(zt_precision precision) {
     return single ? &zt_kernel_single_base : &zt_kernel_double_base;
 }
 
-zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision precision,
-                            double pixel, zt_meshes *meshes, zt_arena *arena) {
+zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
+                            zt_precision precision, zt_pixel pixel, zt_meshes *meshes,
+                            zt_arena *arena) {
     zt_tracer *tracer = NULL;
     zt_extent *extents;
     int32_t count;
     *ready = (zt_ready){.precision = precision};
     if (precision != ZT_PRECISION_DOUBLE) {
-        ZT_TRY(zt_prepare_single(&tracer, &extents, &count, scene, meshes, arena));
-        ready->accuracy = zt_accuracy_judge(extents, count, scene, pixel);
+        ZT_TRY(zt_prepare_single(&tracer, &extents, &count, exposure, meshes, arena));
+        ready->accuracy = zt_accuracy_judge(extents, count, exposure->moments, pixel);
         if (precision == ZT_PRECISION_AUTO)
             ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
                                                                           : ZT_PRECISION_DOUBLE;
     }
     bool single = ready->precision == ZT_PRECISION_SINGLE;
-    if (!single) ZT_TRY(zt_prepare_double(&tracer, &extents, &count, scene, meshes, arena));
+    if (!single) ZT_TRY(zt_prepare_double(&tracer, &extents, &count, exposure, meshes, arena));
     ZT_TRY(single ? zt_prepare_search_single(tracer, meshes, arena)
                   : zt_prepare_search_double(tracer, meshes, arena));
     ready->tracer = tracer;

@@ -11,7 +11,7 @@
 #include <zoetrope/status.h>
 
 #include "base/arena.h"
-#include "scene/scene.h"
+#include "scene/exposure.h"
 #include "tracer/accuracy.h"
 #include "tracer/meshes.h"
 
@@ -27,20 +27,37 @@ typedef struct zt_rays {
     alignas(64) double dx[ZT_BATCH];
     alignas(64) double dy[ZT_BATCH];
     alignas(64) double dz[ZT_BATCH];
+    /* When: a fraction of the shutter's opening. Read where the tracer moves. */
+    alignas(64) float time[ZT_BATCH];
+    /* Random numbers for lamps with a size are keyed by these (tracer/sampler.h): those of the
+     * ray's pixel in this frame, and which sample it is. Read where there are such lamps. */
+    alignas(64) uint32_t key[ZT_BATCH];
+    alignas(64) uint32_t sample[ZT_BATCH];
     int count;
+    bool wants_path; /* whether zt_radiance.path is asked for */
 } zt_rays;
+
+/* How many rays of each kind were traced. */
+typedef struct zt_ray_counts {
+    int64_t primary, shadow, mirror;
+} zt_ray_counts;
 
 /* Linear light for each ray. */
 typedef struct zt_radiance {
     alignas(64) float r[ZT_BATCH];
     alignas(64) float g[ZT_BATCH];
     alignas(64) float b[ZT_BATCH];
+    /* Of what the ray saw, where asked for: the same for two rays where they and their mirrored
+     * rays met the same things, of the same cells of patterns, lit by the same lamps. */
+    alignas(64) uint32_t path[ZT_BATCH];
+    zt_ray_counts counts; /* added to */
 } zt_radiance;
 
 /* One ray asked about by itself. `source` is -1 for a ray that begins anywhere, or what
  * `mirror_source` was for the ray that is mirrored. Space is relative to the camera. */
 typedef struct zt_probe {
     vec3 origin, direction; /* of any length but zero */
+    double time;            /* a fraction of the shutter's opening */
     int32_t source;
     /* The answer. `object` is an index in the scene, or -1 where nothing is hit: then the rest
      * says nothing. */
@@ -70,13 +87,16 @@ typedef struct zt_ready {
     zt_precision precision; /* not ZT_PRECISION_AUTO */
     zt_accuracy
         accuracy; /* what asks for double; FINE where nobody asked (double was wanted) */
+    bool moves;   /* something moves while the shutter is open, the camera left aside */
+    bool random;  /* there are lamps with a size: light is a mean over random numbers */
 } zt_ready;
 
-/* Prepares a scene for a picture whose pixels are `pixel` wide at distance 1. The kernel is the
- * one for the widest instructions that this machine has, or that the environment variable
- * ZOETROPE_ISA names: scalar, base, avx2 or avx512. */
-zt_status zt_tracer_prepare(zt_ready *ready, const zt_scene *scene, zt_precision precision,
-                            double pixel, zt_meshes *meshes, zt_arena *arena);
+/* Prepares an exposure for a picture. Space is relative to the camera of the first moment.
+ * The kernel is the one for the widest instructions that this machine has, or that the
+ * environment variable ZOETROPE_ISA names: scalar, base, avx2 or avx512. */
+zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
+                            zt_precision precision, zt_pixel pixel, zt_meshes *meshes,
+                            zt_arena *arena);
 
 /* What a thread works with, whatever the kernel: bytes, aligned to 64. */
 size_t zt_kernel_work_size(void);

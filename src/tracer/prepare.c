@@ -195,7 +195,9 @@ static size_t count_patterns(const zt_scene *scene) {
 }
 
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t *extent_count,
-                                   const zt_scene *scene, zt_meshes *meshes, zt_arena *arena) {
+                                   const zt_exposure *exposure, zt_meshes *meshes,
+                                   zt_arena *arena) {
+    const zt_scene *scene = exposure->moments;
     size_t count = (size_t)scene->object_count;
     zt_tracer *tracer = ZT_PUSH(arena, zt_tracer, 1);
     made all = {.primitives = ZT_PUSH(arena, zt_primitive, count),

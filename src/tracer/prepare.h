@@ -7,7 +7,7 @@
 /* Makes the tracer of a precision, and the extents of its primitives, in the arena. Things that
  * are degenerate have nothing to hit and are left out. */
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
-                                   int32_t *extent_count, const zt_scene *scene,
+                                   int32_t *extent_count, const zt_exposure *exposure,
                                    zt_meshes *meshes, zt_arena *arena);
 
 /* Then what is asked by itself is told from what is asked through a hierarchy, which is built:

@@ -22,12 +22,12 @@ static void make_rays(zt_rays *rays, const zt_lens *lens, int tile) {
         x[i] = (float)column + 0.5f;
         y[i] = (float)row + 0.5f;
     }
-    zt_lens_rays(rays, lens, x, y, ZT_BATCH);
+    zt_lens_rays(rays, lens, x, y, NULL, NULL, ZT_BATCH);
 }
 
 typedef struct loop {
     zt_ready ready;
-    zt_lens lens;
+    const zt_lens *lens;
     zt_rays *rays; /* of a row of tiles: few enough for a cache */
     void *work;
 } loop;
@@ -37,7 +37,7 @@ static spent loop_run(void *user) {
     zt_radiance light;
     spent sum = {0, 0};
     for (int first = 0; first < TILES; first += COLUMNS) {
-        for (int i = 0; i < COLUMNS; i++) make_rays(&l->rays[i], &l->lens, first + i);
+        for (int i = 0; i < COLUMNS; i++) make_rays(&l->rays[i], l->lens, first + i);
         spent start = spent_now();
         for (int i = 0; i < COLUMNS; i++)
             l->ready.kernel->trace(&light, l->ready.tracer, &l->rays[i], l->work);
@@ -54,7 +54,9 @@ static void measure(const char *film) {
     zt_meshes *meshes;
     must(zt_animation_freeze(&scene, animation, 0, &arena, to_stderr), film);
     must(zt_meshes_open(&meshes, scene.meshes, scene.mesh_count, 1, to_stderr), film);
-    zt_lens lens = zt_lens_prepare(&scene.camera, WIDTH, HEIGHT);
+    zt_lens *lens;
+    zt_exposure own = zt_exposure_of(&scene);
+    must(zt_lens_prepare(&lens, &own, WIDTH, HEIGHT, &arena), film);
     zt_rays *rays = ZT_PUSH(&arena, zt_rays, COLUMNS);
     void *work = zt_arena_push(&arena, zt_kernel_work_size());
     must_be(rays && work, "out of memory");
@@ -66,7 +68,8 @@ static void measure(const char *film) {
                         {"primary rays alone", loop_run, &loops[1], {0, 0}}};
     for (int i = 0; i < 2; i++) {
         loops[i] = (loop){.lens = lens, .rays = rays, .work = work};
-        must(zt_tracer_prepare(&loops[i].ready, scenes[i], ZT_PRECISION_AUTO,
+        zt_exposure exposure = zt_exposure_of(scenes[i]);
+        must(zt_tracer_prepare(&loops[i].ready, &exposure, ZT_PRECISION_AUTO,
                                zt_lens_pixel(&scene.camera, HEIGHT), meshes, &arena),
              film);
     }

@@ -32,12 +32,13 @@ probe_tracer *probe_open(const zt_scene *scene, probe_precision precision,
                          probe_precision *chosen) {
     enum { LINES = 720 }; /* of the picture that auto is asked for */
     probe_tracer *t = calloc(1, sizeof *t);
-    double pixel = 2 * tan(scene->camera.fov / 2) / LINES;
+    zt_pixel pixel = zt_lens_pixel(&scene->camera, LINES);
+    zt_exposure exposure = zt_exposure_of(scene);
     if (!t) return NULL;
     t->work = zt_arena_push(&t->arena, zt_kernel_work_size());
     if (!t->work ||
         zt_meshes_open(&t->meshes, scene->meshes, scene->mesh_count, 1, (zt_listener){0}) ||
-        zt_tracer_prepare(&t->ready, scene, precision_of(precision), pixel, t->meshes,
+        zt_tracer_prepare(&t->ready, &exposure, precision_of(precision), pixel, t->meshes,
                           &t->arena)) {
         probe_close(&t);
         return NULL;
@@ -77,10 +78,11 @@ static int64_t render(zt_image *image, const zt_scene *scene, const probe_tracer
     zt_arena arena = {0};
     zt_render_work *work;
     int64_t left_out = -1;
-    zt_render_job job = {.scene = &t->ready,
-                         .lens = zt_lens_prepare(&scene->camera, image->width, image->height),
-                         .samples = 1};
-    bool ok = zt_render_work_push(&work, &arena, threads) == ZT_OK &&
+    zt_exposure exposure = zt_exposure_of(scene);
+    zt_lens *lens;
+    zt_render_job job = {.scene = &t->ready, .sampling = {.min = 1, .max = 1}};
+    bool ok = zt_lens_prepare(&lens, &exposure, image->width, image->height, &arena) == ZT_OK &&
+              (job.lens = lens) && zt_render_work_push(&work, &arena, threads) == ZT_OK &&
               zt_render(image, &left_out, &job, work, pool) == ZT_OK;
     zt_arena_free(&arena);
     return ok ? left_out : -1;

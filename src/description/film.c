@@ -1,0 +1,183 @@
+/* What a description says of the film as a whole: its pictures, and when they are taken. */
+#include "description/film.h"
+
+#include <math.h>
+
+#include "description/times.h"
+
+#define COUNT(array) (int)(sizeof(array) / sizeof *(array))
+
+enum { REFLECTIONS_MAX = 1000, SAMPLES_MAX = 65536, FRAME_COUNT_MAX = 100 * 1000 * 1000 };
+
+/* Where adaptive sampling says nothing else: samples a pixel; and the error that refined edges
+ * may have, half of what a display of 8 bits can tell apart in the middle of its range. */
+enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64 };
+#define EDGES_ERROR 0.004
+
+static void read_size(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
+    int64_t size[2];
+    if (node->kind != ZT_NODE_LIST || node->count != 2) {
+        zt_expected(mistakes, node, "size", "a list of width and height");
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+        if (!zt_read_integer(&size[i], mistakes, node->items[i], "size", 1, ZT_IMAGE_SIDE_MAX))
+            return;
+    film->width = (int)size[0];
+    film->height = (int)size[1];
+}
+
+/* The frames whose times are before the end; an end that is nearly a frame's time is meant so.
+ */
+static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
+    zt_moment end;
+    if (!zt_read_moment(&end, mistakes, node, "duration", film->rate)) return;
+    if (end.unit == ZT_TIME_PERCENT) {
+        zt_mistake(mistakes, &node->place, "\"duration\" cannot be a share of itself");
+        return;
+    }
+    bool whole = end.unit == ZT_TIME_FRAMES;
+    double frames = whole ? (double)end.frame
+                          : end.number * (double)film->rate.num / (double)film->rate.den;
+    double nearest = round(frames);
+    frames = fabs(frames - nearest) <= 1e-6 ? nearest : ceil(frames);
+    if (whole ? end.frame < 1 : end.number <= 0)
+        zt_mistake(mistakes, &node->place, "\"duration\" is %s; a film has at least one frame",
+                   zt_show(node->text).text);
+    else if (frames > FRAME_COUNT_MAX)
+        zt_mistake(mistakes, &node->place,
+                   "\"duration\" is %s: %.0f frames; a film has at most %d",
+                   zt_show(node->text).text, frames, FRAME_COUNT_MAX);
+    else
+        film->frame_count = frames < 1 ? 1 : (int64_t)frames;
+}
+
+/* "shutter: 180 deg", or a mapping of "angle" and "phase": shares of the time of a frame, which
+ * is a turn of 360 degrees. */
+static void read_shutter(zt_shutter *shutter, zt_mistakes *mistakes, const zt_node *node) {
+    static const char *const names[] = {"angle", "phase"};
+    const double turn = 2 * 3.14159265358979323846;
+    const zt_node *angle_node = node, *phase_node = NULL;
+    double angle = 0, phase = 0;
+    if (node->kind == ZT_NODE_MAPPING) {
+        zt_fields fields;
+        zt_fields_open(&fields, mistakes, node, "shutter", names, COUNT(names));
+        angle_node = zt_field_required(&fields, mistakes, "angle", &node->place);
+        phase_node = zt_field(&fields, "phase");
+    }
+    zt_range open = {0, 3600, "deg"}, any = {-3600, 3600, "deg"};
+    if (angle_node) zt_read_angle(&angle, mistakes, angle_node, "angle", open);
+    if (phase_node) zt_read_angle(&phase, mistakes, phase_node, "phase", any);
+    *shutter = (zt_shutter){phase / turn, (phase + angle) / turn};
+}
+
+/* "samples: 64", or a mapping of "min", "max" and "error". */
+static void read_samples(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
+    static const char *const names[] = {"min", "max", "error"};
+    int64_t min = MIN_SAMPLES, max = MAX_SAMPLES;
+    if (node->kind != ZT_NODE_MAPPING) {
+        if (!zt_read_integer(&max, mistakes, node, "samples", 1, SAMPLES_MAX)) return;
+        sampling->min = sampling->max = (int)max;
+        return;
+    }
+    zt_fields fields;
+    zt_fields_open(&fields, mistakes, node, "samples", names, COUNT(names));
+    const zt_node *min_node = zt_field(&fields, "min"), *max_node = zt_field(&fields, "max"),
+                  *error = zt_field_required(&fields, mistakes, "error", &node->place);
+    if (min_node) zt_read_integer(&min, mistakes, min_node, "min", 1, SAMPLES_MAX);
+    if (max_node) zt_read_integer(&max, mistakes, max_node, "max", 1, SAMPLES_MAX);
+    if (error)
+        zt_read_number(&sampling->error, mistakes, error, "error", (zt_range){0, 1, NULL});
+    if (max_node && min_node && max < min)
+        zt_mistake(mistakes, &max_node->place, "\"max\" is below \"min\"");
+    sampling->max = (int)max;
+    sampling->min = (int)(min < max ? min : max);
+}
+
+/* "filter: gaussian", or a mapping of "kind" and "width". */
+static void read_filter(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
+    static const char *const names[] = {"kind", "width"};
+    static const char *const filters[ZT_FILTER_COUNT] = {"box", "tent", "gaussian", "mitchell",
+                                                         "blackman-harris"};
+    const zt_node *kind = node;
+    int choice;
+    if (node->kind == ZT_NODE_MAPPING) {
+        zt_fields fields;
+        zt_fields_open(&fields, mistakes, node, "filter", names, COUNT(names));
+        const zt_node *width = zt_field(&fields, "width");
+        kind = zt_field_required(&fields, mistakes, "kind", &node->place);
+        if (width)
+            zt_read_number(&sampling->filter_width, mistakes, width, "width",
+                           (zt_range){0.1, 16, NULL});
+    }
+    if (kind && zt_read_choice(&choice, mistakes, kind, "filter", filters, COUNT(filters)))
+        sampling->filter = (zt_filter)choice;
+}
+
+static void read_seed(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
+    int64_t number;
+    if (node->kind == ZT_NODE_TEXT && zt_text_equal(node->text, "fixed"))
+        sampling->seed_fixed = true;
+    else if (zt_read_integer(&number, mistakes, node, "seed", 0, UINT32_MAX))
+        sampling->seed = (uint32_t)number;
+}
+
+static void read_sampling(zt_sampling *sampling, zt_mistakes *mistakes,
+                          const zt_fields *fields) {
+    static const char *const qualities[] = {"even", "edges"};
+    const zt_node *samples = zt_field(fields, "samples"), *filter = zt_field(fields, "filter"),
+                  *quality = zt_field(fields, "quality"), *seed = zt_field(fields, "seed");
+    int choice;
+    if (quality &&
+        zt_read_choice(&choice, mistakes, quality, "quality", qualities, COUNT(qualities)))
+        sampling->edges = choice == 1;
+    if (sampling->edges)
+        *sampling =
+            (zt_sampling){.min = 1, .max = MAX_SAMPLES, .error = EDGES_ERROR, .edges = true};
+    if (samples) read_samples(sampling, mistakes, samples);
+    if (filter) read_filter(sampling, mistakes, filter);
+    if (seed) read_seed(sampling, mistakes, seed);
+}
+
+zt_status zt_film_read(zt_reading *reading, const zt_node *node) {
+    static const char *const names[] = {"size",    "rate",        "duration", "view",
+                                        "shading", "reflections", "samples",  "filter",
+                                        "quality", "seed",        "shutter"};
+    static const char *const views[] = {[ZT_VIEW_RAW] = "raw", [ZT_VIEW_SRGB] = "srgb"};
+    static const char *const shadings[] = {"classic"};
+    zt_mistakes *mistakes = &reading->mistakes;
+    zt_film *film = &reading->animation->film;
+    zt_fields fields;
+    ZT_TRY(zt_override_in(&node, reading, "film", names, COUNT(names)));
+    if (!zt_fields_open(&fields, mistakes, node, "film", names, COUNT(names))) return ZT_OK;
+    const zt_node *size = zt_field(&fields, "size"), *rate = zt_field(&fields, "rate"),
+                  *duration = zt_field_required(&fields, mistakes, "duration", &node->place),
+                  *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
+                  *reflections = zt_field(&fields, "reflections"),
+                  *shutter = zt_field(&fields, "shutter");
+    int choice;
+    int64_t number;
+    if (size) read_size(film, mistakes, size);
+    if (rate) zt_read_rate(&film->rate, mistakes, rate, "rate");
+    if (duration) read_duration(film, mistakes, duration);
+    if (view && zt_read_choice(&choice, mistakes, view, "view", views, COUNT(views)))
+        film->view = (zt_view)choice;
+    if (shading)
+        zt_read_choice(&choice, mistakes, shading, "shading", shadings, COUNT(shadings));
+    if (reflections &&
+        zt_read_integer(&number, mistakes, reflections, "reflections", 0, REFLECTIONS_MAX))
+        reading->animation->rest.reflection_depth = (int32_t)number;
+    if (shutter) read_shutter(&film->shutter, mistakes, shutter);
+    read_sampling(&film->sampling, mistakes, &fields);
+    return ZT_OK;
+}
+
+void zt_film_rest(zt_animation *animation) {
+    animation->film = (zt_film){.width = 1280,
+                                .height = 720,
+                                .rate = {24, 1},
+                                .frame_count = 1,
+                                .view = ZT_VIEW_SRGB,
+                                .sampling = {.min = 1, .max = 1}};
+    animation->rest.reflection_depth = 4;
+}
