@@ -82,19 +82,13 @@ static void begin(work *restrict w, const zt_rays *restrict given) {
     }
 }
 
-/* When each ray is: on its way from which moment to the next, and how far. What steps is at one
- * moment or the other. */
+/* When each ray is: on its way from which moment to the next, and how far. */
 static void begin_moments(zt_origins *from, const zt_tracer *tracer, const float *time,
                           int count) {
-    const zt_exposure *e = tracer->exposure;
-    for (int i = 0; i < zt_batch_padded(count); i++) {
-        double t = i < count ? fmin(fmax((double)time[i], 0), 1) : 0;
-        int cell = (int)(t * ZT_TIME_CELLS);
-        int m = tracer->moment_at[cell < ZT_TIME_CELLS ? cell : ZT_TIME_CELLS - 1];
-        double between = (t - e->times[m]) / (e->times[m + 1] - e->times[m]);
-        from->moment[i] = m;
-        from->between[i] = (real)(e->steps[m] ? (between < 0.5 ? 0 : 1) : between);
-    }
+    for (int i = 0; i < zt_batch_padded(count); i++)
+        from->between[i] =
+            (real)zt_exposure_find(&from->moment[i], tracer->exposure, tracer->moment_at,
+                                   i < count ? (double)time[i] : 0);
 }
 
 /* Moves what ray i carries through time to place k; numbers in `list` are no less than their

@@ -56,9 +56,6 @@ static inline vec3 zt_placed_point(const zt_placed_mesh *m, vec3 p) {
                                   vec3_dot(m->rows[2], p)});
 }
 
-/* All moments of an exposure are at multiples of this share of the opening. */
-enum { ZT_TIME_CELLS = 4096 };
-
 struct zt_tracer {
     const zt_primitive *primitives;
     const zt_surface *surfaces; /* one for each primitive */
@@ -78,11 +75,9 @@ struct zt_tracer {
     real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0
                */
     bool has_solids, has_patterns;
-    /* Of what moves: the exposure's moments, and for each cell of time, an equal share of the
-     * opening, the last moment that is not after its beginning. */
-    bool moves;
+    bool moves; /* then the next two are there */
     const zt_exposure *exposure;
-    const uint16_t *moment_at; /* ZT_TIME_CELLS; NULL where nothing moves */
+    const uint16_t *moment_at; /* of zt_exposure_index() */
 };
 
 #endif
