@@ -184,4 +184,21 @@ void zt_scene_worlds(xform *worlds, const zt_scene *scene, vec3 origin);
  */
 xform zt_camera_xform(const zt_camera *camera);
 
+/* Half of what the picture shows from bottom to top: in the unit of space of an orthographic
+ * lens, else of a perspective one at a distance of 1. */
+double zt_camera_half_height(const zt_camera *camera);
+
+/* Millimetres, of a perspective lens: as given, or that of `fov` on such a sensor. */
+double zt_camera_focal_length(const zt_camera *camera);
+
+/* The radius of the opening, in the unit of space; of blades, that of the circle that their
+ * corners are on. 0: a pinhole. */
+double zt_camera_opening(const zt_camera *camera);
+
+/* How far ahead of the camera a point is, along its view; below 0 behind it. */
+double zt_camera_depth(const zt_camera *camera, vec3 point);
+
+/* How far ahead all is sharp; never behind, nor nearer than a millionth of the opening. */
+double zt_camera_focus(const zt_camera *camera);
+
 #endif
