@@ -19,10 +19,17 @@ static zt_image *read_back(const char *path) {
     return image;
 }
 
-static void write_picture(const zt_image *image, zt_view view, const char *path) {
+static void write_wished(const zt_image *image, zt_view view, const char *path,
+                         const zt_wish *options) {
     heard h;
-    if (zt_image_file_write(image, view, path, path, listener_of(&h)) != ZT_OK)
+    zt_image_wishes wishes;
+    if (zt_image_wish(&wishes, path, options, listener_of(&h)) != ZT_OK ||
+        zt_image_file_write(image, view, &wishes, path, listener_of(&h)) != ZT_OK)
         fail_msg("%s", h.text);
+}
+
+static void write_picture(const zt_image *image, zt_view view, const char *path) {
+    write_wished(image, view, path, NULL);
 }
 
 /* The largest difference of any number from what `expect` makes of the picture's. */
@@ -73,7 +80,83 @@ static void formats_hold_the_picture(void **state) {
     assert_true(largest_difference(image, "a.jpg", srgb8) < 8.0 / 255);
     write_picture(image, ZT_VIEW_SRGB, "b.jpeg");
     assert_true(same_files("a.jpg", "b.jpeg"));
+    write_picture(image, ZT_VIEW_SRGB, "a.webp");
+    assert_true(largest_difference(image, "a.webp", srgb8) < 24.0 / 255);
     zt_image_free(&image);
+}
+
+static double dpx10(double linear) {
+    return floor(1023 * zt_develop_value(linear, ZT_VIEW_SRGB) + 0.5) / 1023;
+}
+
+/* What can be wished for of each format is what is in the file: as many digits as were asked
+ * for, whatever the compression, if it is one that loses nothing. */
+static void wishes_come_true(void **state) {
+    static const struct {
+        const char *path, *bits, *compression, *tile;
+        double (*expect)(double);
+        double within;
+    } files[] = {
+        {"w.png", "16", "zip:9", NULL, srgb16, 1e-7},
+        {"w8.png", "8", "zip:1", NULL, srgb8, 1e-7},
+        {"w.exr", "float", "piz", NULL, as_it_is, 0},
+        {"z.exr", "float", "zip:9", "32", as_it_is, 0},
+        {"n.exr", "half", "none", "16", as_it_is, 0x1p-12},
+        {"r.exr", "float", "rle", NULL, as_it_is, 0},
+        {"s.exr", "float", "zips", NULL, as_it_is, 0},
+        {"p.exr", "float", "pxr24", NULL, as_it_is, 0x1p-15},
+        {"b.exr", "half", "b44", NULL, as_it_is, 0.2},
+        {"d.exr", "half", "dwaa:10", NULL, as_it_is, 0.2},
+        {"e.exr", "half", "dwab", NULL, as_it_is, 0.2},
+        {"w.tif", "float", "zip", NULL, as_it_is, 0},
+        {"l.tif", "16", "lzw", NULL, srgb16, 1e-7},
+        {"t.tiff", "8", "none", "16", srgb8, 1e-7},
+        {"w.dpx", "16", NULL, NULL, srgb16, 1e-7},
+        {"t.dpx", "10", NULL, NULL, dpx10, 0x1p-10} /* its reader fills up with zeros */,
+        {"w.hdr", NULL, NULL, NULL, as_it_is, 0x1p-8},
+    };
+    (void)state;
+    zt_image *image = picture(61, 43, 0);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        const zt_wish options[] = {
+            {files[i].bits ? "bits" : "preset", files[i].bits},
+            {files[i].compression ? "compression" : "preset", files[i].compression},
+            {files[i].tile ? "tile" : "preset", files[i].tile},
+            {NULL, NULL}};
+        write_wished(image, ZT_VIEW_SRGB, files[i].path, options);
+        double off = largest_difference(image, files[i].path, files[i].expect);
+        if (!(off <= files[i].within)) fail_msg("%s is off by %g", files[i].path, off);
+    }
+    zt_image_free(&image);
+}
+
+/* What a format does not have is told with what there is instead. */
+static void wishes_refused(void **state) {
+    static const struct {
+        const char *path, *name, *value, *told;
+    } wishes[] = {
+        {"x.png", "bits", "32", "bits=32 makes no sense for a png file; there is: 8, 16"},
+        {"x.png", "compression", "dwaa", "there is: zip:0-9"},
+        {"x.png", "compression", "zip:10", "there is: zip:0-9"},
+        {"x.exr", "compression", "dwaa:0", "dwaa:1-100000"},
+        {"x.exr", "compression", "piz:3", "piz, pxr24"},
+        {"x.exr", "compression", "", "none, rle"},
+        {"x.exr", "bits", "8", "half, float"},
+        {"x.exr", "tile", "17", "multiple of 16"},
+        {"x.jpg", "tile", "16", "there is: none"},
+        {"x.jpg", "compression", "jpeg:101", "jpeg:1-100"},
+        {"x.hdr", "compression", "zip", "there is: none"},
+        {"x.gift", "bits", "8", "ending of x.gift"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++) {
+        heard h;
+        zt_image_wishes got;
+        const zt_wish options[] = {{wishes[i].name, wishes[i].value}, {NULL, NULL}};
+        assert_int_not_equal(zt_image_wish(&got, wishes[i].path, options, listener_of(&h)),
+                             ZT_OK);
+        assert_told(&h, wishes[i].told);
+    }
 }
 
 /* Half floats end at 65504: brighter light stays the brightest there is, and never an infinity,
@@ -97,8 +180,10 @@ static void name_and_path(void **state) {
     (void)state;
     heard h;
     zt_image *image = picture(16, 8, 0);
+    zt_image_wishes png, other;
+    assert_int_equal(zt_image_wish(&png, "x.png", NULL, listener_of(&h)), ZT_OK);
     assert_int_equal(
-        zt_image_file_write(image, ZT_VIEW_SRGB, "näher – 日本.part", "x.png", listener_of(&h)),
+        zt_image_file_write(image, ZT_VIEW_SRGB, &png, "näher – 日本.part", listener_of(&h)),
         ZT_OK);
     write_picture(image, ZT_VIEW_SRGB, "plain.png");
     assert_true(same_files("näher – 日本.part", "plain.png"));
@@ -109,11 +194,10 @@ static void name_and_path(void **state) {
         memmem(bytes, size, "sRGB", 4)); /* tagged for the display it is meant for */
     free(bytes);
 
-    assert_int_equal(
-        zt_image_file_write(image, ZT_VIEW_SRGB, "x.png", "x.webm", listener_of(&h)), ZT_EFILE);
+    assert_int_equal(zt_image_wish(&other, "x.webm", NULL, listener_of(&h)), ZT_EUNSUPPORTED);
     assert_told(&h, "ending");
     assert_int_equal(
-        zt_image_file_write(image, ZT_VIEW_SRGB, "none/x.png", "x.png", listener_of(&h)),
+        zt_image_file_write(image, ZT_VIEW_SRGB, &png, "none/x.png", listener_of(&h)),
         ZT_EFILE);
     assert_told(&h, "none/x.png: No such file or directory");
     zt_image_free(&image);
@@ -149,8 +233,11 @@ static void full_disk(void **state) {
         heard h;
         char path[32];
         snprintf(path, sizeof path, "full%s", *ending);
+        zt_image_wishes wishes;
+        assert_int_equal(zt_image_wish(&wishes, path, NULL, listener_of(&h)), ZT_OK);
         disk_has(100);
-        zt_status status = zt_image_file_write(image, ZT_VIEW_RAW, path, path, listener_of(&h));
+        zt_status status =
+            zt_image_file_write(image, ZT_VIEW_RAW, &wishes, path, listener_of(&h));
         disk_has(0);
         assert_int_equal(status, ZT_EFILE);
         assert_told(&h, "File too large");
@@ -213,6 +300,8 @@ static void huge_claims(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats_hold_the_picture),
+        cmocka_unit_test(wishes_come_true),
+        cmocka_unit_test(wishes_refused),
         cmocka_unit_test(exr_has_no_infinities),
         cmocka_unit_test(name_and_path),
         cmocka_unit_test(no_file_has_a_date),

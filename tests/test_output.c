@@ -46,8 +46,10 @@ static void write_all(const char *target, const int64_t *frames, int count) {
 static void assert_frame(const char *path, int frame) {
     zt_image *image = picture(format.width, format.height, frame);
     heard h;
-    assert_int_equal(zt_image_file_write(image, format.view, "expected", path, listener_of(&h)),
-                     ZT_OK);
+    zt_image_wishes wishes;
+    assert_int_equal(zt_image_wish(&wishes, path, NULL, listener_of(&h)), ZT_OK);
+    assert_int_equal(
+        zt_image_file_write(image, format.view, &wishes, "expected", listener_of(&h)), ZT_OK);
     zt_image_free(&image);
     if (!exists(path)) fail_msg("no file %s", path);
     assert_true(same_files(path, "expected"));
@@ -160,8 +162,9 @@ static void unknown_endings(void **state) {
     assert_refused("u/film.mp5", "did you mean \".mp4\"?");
     assert_refused("u/a.####.pgn", "did you mean \".png\"?");
     assert_refused("u/a.hsah", "did you mean \".hash\"?");
-    assert_refused("u.png/film", "a movie .mp4; images .png .exr .tif .tiff .jpg .jpeg; "
-                                 "checksums .hash");
+    assert_refused("u.png/film",
+                   "a movie .mp4; images .png .exr .tif .tiff .jpg .jpeg .webp .hdr .dpx; "
+                   "checksums .hash");
     assert_refused("u/%s%n", "no output is named u/%s%n");
     assert_refused("", "no output is named");
     assert_refused("mp4", "no output is named mp4");

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <zoetrope/image.h>
+#include <zoetrope/wish.h>
 #include <zoetrope/rate.h>
 #include <zoetrope/status.h>
 
@@ -29,9 +30,7 @@ typedef struct zt_output_format {
  * veryfast (where nothing is wished for), faster, fast, medium, slow, slower, veryslow,
  * placebo.
  */
-typedef struct zt_output_option {
-    const char *name, *value;
-} zt_output_option;
+typedef zt_wish zt_output_option;
 
 /* Opens an output, chosen by the name of `target`. `options` end with one whose name is NULL,
  * and may be NULL; of two with one name the later counts.

@@ -31,10 +31,12 @@ static zt_status write_pixels(const char *path, const char *target, const char *
     if (!door) return ZT_EUNSUPPORTED;
     zt_raster raster = {0};
     zt_image *image = NULL;
+    zt_image_wishes wishes;
     zt_status status = door->draw(&raster, svg, length, pixels_a_unit, listener);
     if (status == ZT_OK) status = to_image(&image, &raster);
+    if (status == ZT_OK) status = zt_image_wish(&wishes, target, NULL, listener);
     if (status == ZT_OK)
-        status = zt_image_file_write(image, ZT_VIEW_RAW, path, target, listener);
+        status = zt_image_file_write(image, ZT_VIEW_RAW, &wishes, path, listener);
     zt_image_free(&image);
     free(raster.pixels);
     return status;

@@ -17,6 +17,7 @@ typedef struct stills {
     int digits; /* the least that are written */
     bool single_written;
     zt_view view;
+    zt_image_wishes wishes;
     zt_listener listener;
 } stills;
 
@@ -89,12 +90,12 @@ static zt_status refuse_several(const stills *images) {
 
 static zt_status open_stills(void **state, const char *target, const zt_output_format *format,
                              const zt_output_option *options, zt_listener listener) {
-    (void)options;
     stills *images = calloc(1, sizeof *images);
     if (!images) return ZT_EMEMORY;
     images->view = format->view;
     images->listener = listener;
-    zt_status status = read_pattern(images, target);
+    zt_status status = zt_image_wish(&images->wishes, target, options, listener);
+    if (status == ZT_OK) status = read_pattern(images, target);
     if (status == ZT_OK && !images->after && format->frame_count > 1)
         status = refuse_several(images);
     if (status == ZT_OK) status = zt_image_file_ready(listener);
@@ -110,7 +111,7 @@ static zt_status write_image(const stills *images, const zt_image *image, const 
     zt_aside aside;
     ZT_TRY(zt_aside_open(&aside, path, images->listener));
     zt_status status =
-        zt_image_file_write(image, images->view, aside.path, path, images->listener);
+        zt_image_file_write(image, images->view, &images->wishes, aside.path, images->listener);
     if (status == ZT_OK) return zt_aside_keep(&aside, images->listener);
     zt_aside_drop(&aside);
     return status;
@@ -130,6 +131,5 @@ static zt_status write_stills(void *state, const zt_image *image, int64_t frame)
     return write_image(images, image, images->before);
 }
 
-static const char *const no_options[] = {NULL};
-const zt_sink zt_sink_stills = {"images",    zt_image_file_endings, no_options,
+const zt_sink zt_sink_stills = {"images",    zt_image_file_endings, zt_image_file_options,
                                 open_stills, write_stills,          close_stills};

@@ -5,6 +5,7 @@
  * success, and libjpeg prints and ends the process. */
 #include "image/file.h"
 
+#include <cfloat>
 #include <errno.h>
 #include <memory>
 #include <stdio.h>
@@ -18,7 +19,6 @@
 extern "C" {
 #include "base/diag.h"
 #include "base/module.h"
-#include "base/text.h"
 #include "image/develop.h"
 }
 
@@ -56,39 +56,57 @@ zt_status without_exceptions(zt_listener listener, const char *what, const char 
     }
 }
 
-bool is_one_of(const std::string &ending, const char *a, const char *b) {
-    return ending == a || ending == b;
+/* The name of a compression, with its level as OpenImageIO takes it. */
+std::string compression_of(const zt_image_wishes *w) {
+    std::string name = w->compression->name;
+    return w->compression->highest ? name + ":" + std::to_string(w->level) : name;
 }
 
-/* What the ending asks for: type, compression, colour. The names are OpenImageIO's. */
-OIIO::ImageSpec spec_for(const zt_image *image, const std::string &ending) {
-    OIIO::ImageSpec spec(image->width, image->height, 3, OIIO::TypeDesc::UINT8);
-    /* Both views make numbers that are meant for an sRGB display as they are. */
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    if (ending == ".exr") {
-        spec.set_format(OIIO::TypeDesc::HALF);
-        spec.attribute("oiio:ColorSpace", "Linear");
-        spec.attribute("compression", "zip");
-        spec.attribute("DateTime", date_unknown);
-    } else if (is_one_of(ending, ".tif", ".tiff")) {
-        spec.set_format(OIIO::TypeDesc::UINT16);
-        spec.attribute("compression", "zip");
-        spec.attribute("tiff:zipquality", 4);
-        spec.attribute("tiff:Predictor", 2); /* differences: a quarter of the size */
+/* What is particular to a format. The names are OpenImageIO's. */
+void add_particulars(OIIO::ImageSpec &spec, const zt_image_wishes *w) {
+    std::string format = w->format->endings[0];
+    if (w->compression) spec.attribute("compression", compression_of(w));
+    if (format == ".tif") {
+        spec.attribute("compression", w->compression->name);
+        spec.attribute("tiff:zipquality", w->level);
+        spec.attribute("tiff:Predictor", spec.format == OIIO::TypeDesc::FLOAT ? 3 : 2);
         /* With Exif, OpenImageIO 2.4 leaves its block as the file's first directory, and no one
          * can read the picture. */
         spec.attribute("tiff:write_exif", 0);
-        spec.attribute("DateTime", date_unknown);
-    } else if (is_one_of(ending, ".jpg", ".jpeg")) {
-        spec.attribute("compression", "jpeg:95");
+    } else if (format == ".jpg") {
         spec.attribute("jpeg:subsampling", "4:4:4");
-    } else {
+    } else if (format == ".png") {
         /* Differences to the left neighbour (8 is "none", 16 "sub"): a third of the time of
          * the default, for files that are a fifth larger. */
-        spec.attribute("png:compressionLevel", 4);
+        spec.attribute("png:compressionLevel", w->level);
         spec.attribute("png:filter", 16);
     }
+    if (format == ".exr" || format == ".tif" || format == ".dpx" || format == ".hdr")
+        spec.attribute("DateTime", date_unknown);
+}
+
+OIIO::ImageSpec spec_for(const zt_image *image, const zt_image_wishes *w) {
+    static const OIIO::TypeDesc::BASETYPE types[ZT_DEPTH_COUNT] = {
+        OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::UINT16, OIIO::TypeDesc::UINT16,
+        OIIO::TypeDesc::UINT16, OIIO::TypeDesc::HALF,   OIIO::TypeDesc::FLOAT};
+    OIIO::ImageSpec spec(image->width, image->height, 3, types[w->depth]);
+    /* All views make numbers that are meant for an sRGB display as they are. */
+    spec.attribute("oiio:ColorSpace", w->depth >= ZT_DEPTH_HALF ? "Linear" : "sRGB");
+    if (w->depth == ZT_DEPTH_10 || w->depth == ZT_DEPTH_12)
+        spec.attribute("oiio:BitsPerSample", w->depth == ZT_DEPTH_10 ? 10 : 12);
+    spec.tile_width = spec.tile_height = w->tile;
+    spec.tile_depth = w->tile ? 1 : 0;
+    add_particulars(spec, w);
     return spec;
+}
+
+/* Rounds 16 bits to the nearest value of fewer, of which OpenImageIO takes the first ones. */
+void round_bits(std::vector<uint16_t> &values, unsigned bits) {
+    const uint32_t most = (1u << bits) - 1;
+    for (uint16_t &value : values) {
+        uint32_t code = (value * most + 32767) / 65535;
+        value = uint16_t(code << (16 - bits) | code >> (2 * bits - 16));
+    }
 }
 
 bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view) {
@@ -103,11 +121,14 @@ bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view
         std::vector<uint16_t> pixels(row_count * row_values);
         zt_develop_rgb16(pixels.data(), row_values * sizeof(uint16_t), image, view, 0,
                          image->height);
+        int bits = output.spec().get_int_attribute("oiio:BitsPerSample", 16);
+        if (bits < 16) round_bits(pixels, unsigned(bits));
         return output.write_image(type, pixels.data());
     }
+    float most = type == OIIO::TypeDesc::HALF ? half_max : FLT_MAX;
     std::vector<float> pixels(row_count * row_values);
     for (size_t i = 0; i < pixels.size(); i++)
-        pixels[i] = OIIO::clamp(image->pixels[i / 3 * 4 + i % 3], -half_max, half_max);
+        pixels[i] = OIIO::clamp(image->pixels[i / 3 * 4 + i % 3], -most, most);
     return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
@@ -123,19 +144,15 @@ zt_status write_bytes(const Bytes &bytes, const char *path, zt_listener listener
     return good ? ZT_OK : refuse(listener, "write", path, strerror(error));
 }
 
-zt_status write(const zt_image *image, zt_view view, const char *path, const char *name,
-                zt_listener listener) {
-    std::string ending;
-    for (const char *const *known = zt_image_file_endings; *known; known++)
-        if (zt_text_ends_with(name, *known, true)) ending = *known;
-    if (ending.empty())
-        return refuse(listener, "write", path, "no picture format has this name's ending");
+zt_status write(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
+                const char *path, zt_listener listener) {
     Bytes bytes;
     OIIO::Filesystem::IOVecOutput memory(
         bytes); /* outlives `output`, which may write at its end */
-    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(ending.substr(1));
+    std::unique_ptr<OIIO::ImageOutput> output =
+        OIIO::ImageOutput::create(wishes->format->endings[0] + 1);
     if (!output) return refuse(listener, "write", path, OIIO::geterror());
-    if (!output->set_ioproxy(&memory) || !output->open(path, spec_for(image, ending)) ||
+    if (!output->set_ioproxy(&memory) || !output->open(path, spec_for(image, wishes)) ||
         !write_pixels(*output, image, view) || !output->close())
         return refuse(listener, "write", path, output->geterror());
     return write_bytes(bytes, path, listener);
@@ -171,10 +188,10 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     return ZT_OK;
 }
 
-zt_status write_guarded(const zt_image *image, zt_view view, const char *path, const char *name,
-                        zt_listener listener) {
+zt_status write_guarded(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
+                        const char *path, zt_listener listener) {
     return without_exceptions(listener, "write", path,
-                              [&] { return write(image, view, path, name, listener); });
+                              [&] { return write(image, view, wishes, path, listener); });
 }
 
 zt_status read_guarded(zt_image **image, const char *path, zt_listener listener) {

@@ -6,23 +6,22 @@
 #include <zoetrope/image.h>
 #include <zoetrope/status.h>
 
+#include "image/formats.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* The endings of the formats that can be written, each with its dot; NULL after the last. */
-extern const char *const zt_image_file_endings[];
 
 /* Loads the module, if that has not been done: so that a missing one is told before there is
  * anything to write. ZT_EUNSUPPORTED after telling. */
 zt_status zt_image_file_ready(zt_listener listener);
 
-/* Writes R, G and B of `image` to `path` in the format that the ending of `name` asks for (the
- * two differ while a file is written aside): 8 bits developed by the view for PNG and JPEG, 16
- * bits developed for TIFF, half floats of linear light for EXR (what a half float cannot hold
- * becomes its largest number). ZT_EFILE after telling why. */
-zt_status zt_image_file_write(const zt_image *image, zt_view view, const char *path,
-                              const char *name, zt_listener listener);
+/* Writes R, G and B of `image` to `path` in the format that is wished for: integers developed
+ * by the view, floats of linear light (what a half float cannot hold becomes its largest
+ * number). ZT_EFILE after telling why. */
+zt_status zt_image_file_write(const zt_image *image, zt_view view,
+                              const zt_image_wishes *wishes, const char *path,
+                              zt_listener listener);
 
 /* Reads any image file into floats as they are stored (integers to 0..1, no transfer function
  * undone, grey as R = G = B, A = 1 where the file has none). The caller frees the image.
@@ -32,8 +31,8 @@ zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener lis
 
 /* The module's table: what the two functions above are made of. */
 typedef struct zt_image_file_door {
-    zt_status (*write)(const zt_image *image, zt_view view, const char *path, const char *name,
-                       zt_listener listener);
+    zt_status (*write)(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
+                       const char *path, zt_listener listener);
     zt_status (*read)(zt_image **image, const char *path, zt_listener listener);
 } zt_image_file_door;
 

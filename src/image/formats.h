@@ -1,0 +1,62 @@
+/* The formats of image files, and what may be wished for of each. */
+#ifndef ZT_IMAGE_FORMATS_H
+#define ZT_IMAGE_FORMATS_H
+
+#include <stdbool.h>
+
+#include <zoetrope/wish.h>
+#include <zoetrope/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How a number is stored: integers of so many bits are developed by the view, floats are linear
+ * light as it is. */
+typedef enum zt_depth {
+    ZT_DEPTH_8,
+    ZT_DEPTH_10,
+    ZT_DEPTH_12,
+    ZT_DEPTH_16,
+    ZT_DEPTH_HALF,
+    ZT_DEPTH_FLOAT,
+    ZT_DEPTH_COUNT
+} zt_depth;
+
+typedef struct zt_compression {
+    const char *name;         /* OpenImageIO's; NULL after the last */
+    int lowest, highest, own; /* its level, and that where none is wished for; 0, 0 without */
+} zt_compression;
+
+typedef struct zt_image_format {
+    const char *endings[3];          /* with their dots; NULL after the last */
+    zt_depth depths[ZT_DEPTH_COUNT]; /* the first is the usual one */
+    int depth_count;
+    const zt_compression *compressions; /* the first is the usual one; NULL: none to choose */
+    bool has_tiles, has_alpha;
+} zt_image_format;
+
+/* What is wished for. */
+typedef struct zt_image_wishes {
+    const zt_image_format *format;
+    zt_depth depth;
+    const zt_compression *compression; /* NULL where there is none to choose */
+    int level;                         /* of the compression; 0 where it has none */
+    int tile;                          /* pixels, the side of a tile; 0: rows */
+} zt_image_wishes;
+
+/* The endings of all formats; NULL after the last. */
+extern const char *const zt_image_file_endings[];
+
+/* The names of what can be wished for: bits, compression, tile; NULL after the last. */
+extern const char *const zt_image_file_options[];
+
+/* What is wished for of a file whose name ends as `name` does. `options` may be NULL, and may
+ * hold others. ZT_EUNSUPPORTED, ZT_EARGUMENT after telling what there is instead. */
+zt_status zt_image_wish(zt_image_wishes *wishes, const char *name, const zt_wish *options,
+                        zt_listener listener);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
