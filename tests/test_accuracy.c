@@ -27,7 +27,7 @@ static zt_ready ready_for(zt_precision precision) {
     zt_meshes *meshes;
     zt_arena arena = {0};
     zt_ready ready;
-    zt_pixel pixel = {0, 2 * tan(s.scene.camera.fov / 2) / HEIGHT};
+    zt_pixel pixel = {.angle = 2 * tan(s.scene.camera.fov / 2) / HEIGHT};
     zt_exposure exposure = zt_exposure_of(&s.scene);
     assert_int_equal(
         zt_meshes_open(&meshes, s.scene.meshes, s.scene.mesh_count, 1, (zt_listener){0}),

@@ -9,8 +9,10 @@
 /* A camera made ready for a picture of a given size. Lives in the arena that it was made in. */
 typedef struct zt_lens zt_lens;
 
-/* How wide a pixel of the picture is; square. */
+/* How wide a pixel of the picture is, from top to bottom, at one moment; and the finest of all
+ * moments, with how far from the first moment's camera rays begin. */
 zt_pixel zt_lens_pixel(const zt_camera *camera, int height);
+zt_pixel zt_lens_finest_pixel(const zt_exposure *exposure, int width, int height);
 
 /* ZT_EMEMORY. */
 zt_status zt_lens_prepare(zt_lens **lens, const zt_exposure *exposure, int width, int height,

@@ -79,9 +79,10 @@ static zt_status prepare(taking *t, zt_renderer *r, int64_t frame) {
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&t->exposure, r->animation, frame, r->format.height, &r->frame,
                              r->listener));
-    ZT_TRY(zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
-                             zt_lens_pixel(&t->exposure.moments[0].camera, r->format.height),
-                             r->meshes, &r->frame));
+    ZT_TRY(
+        zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
+                          zt_lens_finest_pixel(&t->exposure, r->format.width, r->format.height),
+                          r->meshes, &r->frame));
     zt_shutter_keys(&t->place_key, &t->frame_key, &t->exposure, &r->sampling);
     return zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height,
                            &r->frame);

@@ -29,20 +29,21 @@ enum { MIRRORS_MAX = 64 };
 enum { TWINS_MAX = 8192, SURFACES_MAX = 7, PAIRS_MAX = 20000 };
 
 static zt_accuracy judge_one(const zt_extent *e, zt_pixel pixel) {
+    double size = fmax(e->size, pixel.reach), near = fmax(e->near - pixel.reach, 0);
     zt_accuracy a = {.object = e->object,
                      .other = -1,
-                     .wrong = WRONG * e->stretch * e->size,
-                     .seen = SEEN * (pixel.width + pixel.angle * e->near),
-                     .distance = e->near,
-                     .number = e->size};
+                     .wrong = WRONG * e->stretch * size,
+                     .seen = SEEN * (pixel.width + pixel.angle * near),
+                     .distance = near,
+                     .number = size};
     if (!(e->stretch < STRETCH_MAX)) {
         a.reason = ZT_ACCURACY_STRETCH;
         a.number = e->stretch;
-    } else if (!(e->size < LARGEST) || e->least < LEAST) {
+    } else if (!(size < LARGEST) || e->least < LEAST) {
         a.reason = ZT_ACCURACY_RANGE;
-        a.number = e->least < LEAST ? e->least : e->size;
+        a.number = e->least < LEAST ? e->least : size;
     } else if (a.wrong > a.seen) {
-        a.reason = e->near * 2 > e->size ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
+        a.reason = near * 2 > size ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
     } else if (a.wrong > SEEN_LAMP * e->lamp) {
         a.reason = ZT_ACCURACY_LAMP;
         a.other = e->lamp_light;

@@ -31,9 +31,11 @@ typedef struct zt_accuracy {
                       more one way than another it is stretched */
 } zt_accuracy;
 
-/* How wide a pixel is at a distance d: width + angle d. */
+/* How wide a pixel is at a distance d: width + angle d. And how far from the camera its rays
+ * may begin: within the lens's opening, anywhere on an orthographic picture, where the camera
+ * moves to. */
 typedef struct zt_pixel {
-    double width, angle;
+    double width, angle, reach;
 } zt_pixel;
 
 /* One surface as it was made ready, in the space relative to the camera, in double precision.
