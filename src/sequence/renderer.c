@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
+#include "base/clock.h"
 #include "base/diag.h"
 #include "keyframe/animation.h"
 #include "sequence/shutter.h"
@@ -76,16 +77,21 @@ typedef struct taking {
 } taking;
 
 static zt_status prepare(taking *t, zt_renderer *r, int64_t frame) {
+    double begun_s = zt_clock_s();
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&t->exposure, r->animation, frame, r->format.height, &r->frame,
                              r->listener));
+    double frozen_s = zt_clock_s();
     ZT_TRY(
         zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
                           zt_lens_finest_pixel(&t->exposure, r->format.width, r->format.height),
                           r->meshes, &r->frame));
     zt_shutter_keys(&t->place_key, &t->frame_key, &t->exposure, &r->sampling);
-    return zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height,
-                           &r->frame);
+    ZT_TRY(
+        zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height, &r->frame));
+    r->cost =
+        (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
+    return ZT_OK;
 }
 
 zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
@@ -110,7 +116,10 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
                          .frame_key = t.frame_key,
                          .stopped = watcher ? watcher->stopped : NULL,
                          .user = watcher ? watcher->user : NULL};
+    double begun_s = zt_clock_s();
     ZT_TRY(zt_render(image, &left_out_count, &job, r->work, r->pool));
+    r->cost.render_s = zt_clock_s() - begun_s;
+    r->cost.left_out_count = left_out_count;
     if (left_out_count > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",

@@ -9,6 +9,13 @@
 #include "render/render.h"
 #include "tracer/meshes.h"
 
+/* What a frame took: seconds of wall time for each stage, and how much there was to do. */
+typedef struct zt_frame_cost {
+    double freeze_s, prepare_s, render_s;
+    zt_ray_counts rays;
+    int64_t left_out_count; /* samples that were not finite */
+} zt_frame_cost;
+
 struct zt_renderer {
     const zt_animation *animation;
     zt_output_format format;
@@ -19,6 +26,7 @@ struct zt_renderer {
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
     zt_render_work *work;
+    zt_frame_cost cost;  /* of the last frame */
     bool told_precision; /* that single precision, which was asked for, is not enough */
 };
 
