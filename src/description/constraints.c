@@ -265,10 +265,11 @@ static bool read_look_at(pending *p, zt_reading *reading, const zt_node *node,
            good;
 }
 
-/* A camera's look_at that is a thing's name. */
-static bool is_aim(const zt_node *node, const zt_property *property) {
+/* A point that a camera turns to, or focuses on, by the name of the thing that is there. */
+static bool is_name_of_point(const zt_node *node, const zt_property *property) {
     return node->kind == ZT_NODE_TEXT && !zt_node_empty(node) &&
-           property == zt_property_find(ZT_OWNER_CAMERA, "look_at");
+           (property == zt_property_find(ZT_OWNER_CAMERA, "look_at") ||
+            property == zt_property_find(ZT_OWNER_CAMERA, "focus_on"));
 }
 
 /* The words for them, each before what may stand beside it. */
@@ -327,9 +328,9 @@ zt_status zt_constraint_read(bool *taken, zt_reading *reading, const zt_node *no
     int word;
     const zt_node *value = find_word(&word, node);
     bool formula = node->kind == ZT_NODE_TEXT && node->text[0] == '=';
-    bool aim = is_aim(node, property);
+    bool point = is_name_of_point(node, property);
     bool twice = is_turned_twice(reading, node, property, index);
-    *taken = twice || value || formula || aim;
+    *taken = twice || value || formula || point;
     if (!*taken || twice) return ZT_OK;
     if (value) return read_mapping(&p, reading, node, word, value, thing);
     p.named = node;
@@ -367,7 +368,7 @@ static zt_status close_pending(pending *p, zt_reading *reading) {
         zt_read_place(&track->orbit.around.thing, reading, p->named, "around");
         break;
     case ZT_TRACK_LOOK_AT:
-        zt_read_place(&track->look_at.target.thing, reading, p->named, "look_at");
+        zt_read_place(&track->look_at.target.thing, reading, p->named, track->property->name);
         break;
     case ZT_TRACK_OFFSET:
         close_offset(p, reading);

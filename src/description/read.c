@@ -1,9 +1,10 @@
-/* The top of a description: version, film, camera, and all that is put together below. */
+/* The top of a description: its version, and all that is put together below. */
 #include <zoetrope/animation.h>
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "description/camera.h"
 #include "description/constraints.h"
 #include "description/curves.h"
 #include "description/document.h"
@@ -13,48 +14,7 @@
 
 #define COUNT(array) (int)(sizeof(array) / sizeof *(array))
 
-enum { LANGUAGE_VERSION = 1, BLADES_MAX = 64 };
-
-/* ---- camera ---------------------------------------------------------------------------------
- */
-
-/* What of a lens does not move. */
-static void read_lens(zt_camera *camera, zt_mistakes *mistakes, const zt_fields *fields) {
-    static const char *const lenses[ZT_LENS_KIND_COUNT] = {"perspective", "orthographic",
-                                                           "equirectangular"};
-    const zt_node *lens = zt_field(fields, "lens"), *blades = zt_field(fields, "blades");
-    int choice;
-    int64_t number;
-    if (lens && zt_read_choice(&choice, mistakes, lens, "lens", lenses, COUNT(lenses)))
-        camera->lens = (zt_lens_kind)choice;
-    if (blades && zt_read_integer(&number, mistakes, blades, "blades", 0, BLADES_MAX))
-        camera->blades = (int32_t)number;
-}
-
-static zt_status read_camera(zt_reading *reading, const zt_node *node) {
-    const char *names[ZT_FIELD_NAMES_MAX];
-    zt_camera *camera = &reading->animation->rest.camera;
-    int name_count = zt_motion_names(names, ZT_OWNER_CAMERA);
-    names[name_count++] = "lens";
-    names[name_count++] = "blades";
-    zt_fields fields;
-    ZT_TRY(zt_override_in(&node, reading, "camera", names, name_count));
-    if (!zt_fields_open(&fields, &reading->mistakes, node, "camera", names, name_count))
-        return ZT_OK;
-    ZT_TRY(zt_motion_read(reading, &fields, ZT_OWNER_CAMERA, 0, "camera", &node->place));
-    const zt_node *aim = zt_field(&fields, "look_at"),
-                  *rotation = zt_field(&fields, "rotation");
-    camera->aimed = aim != NULL;
-    camera->focused = zt_field(&fields, "focus_on") != NULL;
-    read_lens(camera, &reading->mistakes, &fields);
-    if (aim && rotation)
-        zt_mistake(&reading->mistakes, &rotation->place,
-                   "a camera has either \"look_at\" or \"rotation\"");
-    return ZT_OK;
-}
-
-/* ---- all of it ------------------------------------------------------------------------------
- */
+enum { LANGUAGE_VERSION = 1 };
 
 /* Whether the description is written in another version of the language: then nothing else in
  * it is judged. */
@@ -108,7 +68,7 @@ static zt_status read_root(zt_reading *reading, const zt_node *root, const char 
     const zt_node *camera = zt_field_required(&fields, mistakes, "camera", &root->place);
     if (film) ZT_TRY(zt_film_read(reading, film));
     ZT_TRY(read_names(reading, &fields));
-    if (camera) ZT_TRY(read_camera(reading, camera));
+    if (camera) ZT_TRY(zt_camera_read(reading, camera));
     ZT_TRY(zt_objects_read(reading, directory, zt_field(&fields, "materials"),
                            zt_field(&fields, "lights"), zt_field(&fields, "objects")));
     ZT_TRY(zt_motion_close(reading));
