@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/diag.h"
 #include "keyframe/animation.h"
+#include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
 enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
@@ -61,22 +62,14 @@ void zt_renderer_close(zt_renderer **slot) {
     zt_meshes_close(&r->meshes);
     zt_arena_free(&r->run);
     zt_arena_free(&r->frame);
+    zt_pacing_free(&r->pacing);
     free(r);
     *slot = NULL;
 }
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 
-/* A frame on its way: what the scene is meanwhile, the same ready for rays, and the lens. In
- * the frame's memory. */
-typedef struct taking {
-    zt_exposure exposure;
-    zt_ready ready;
-    zt_lens *lens;
-    uint64_t place_key, frame_key;
-} taking;
-
-static zt_status prepare(taking *t, zt_renderer *r, int64_t frame) {
+zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     double begun_s = zt_clock_s();
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&t->exposure, r->animation, frame, r->format.height, &r->frame,
@@ -86,38 +79,34 @@ static zt_status prepare(taking *t, zt_renderer *r, int64_t frame) {
         zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
                           zt_lens_finest_pixel(&t->exposure, r->format.width, r->format.height),
                           r->meshes, &r->frame));
-    zt_shutter_keys(&t->place_key, &t->frame_key, &t->exposure, &r->sampling);
     ZT_TRY(
         zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height, &r->frame));
+    t->job = (zt_render_job){.scene = &t->ready, .lens = t->lens, .sampling = r->sampling};
+    zt_shutter_keys(&t->job.place_key, &t->job.frame_key, &t->exposure, &r->sampling);
     r->cost =
         (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
     return ZT_OK;
 }
 
 zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
-    taking t;
-    ZT_TRY(prepare(&t, r, frame));
+    zt_taking t;
+    ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_say_precision(choice, r, &t.ready, t.exposure.moments);
     return ZT_OK;
 }
 
-zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
-                            const zt_watcher *watcher) {
+zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
+                           const zt_watcher *watcher) {
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
-    taking t;
+    zt_taking t;
     int64_t left_out_count;
-    ZT_TRY(prepare(&t, r, frame));
+    ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_doubt(r, &t.ready, t.exposure.moments, frame);
-    zt_render_job job = {.scene = &t.ready,
-                         .lens = t.lens,
-                         .sampling = r->sampling,
-                         .place_key = t.place_key,
-                         .frame_key = t.frame_key,
-                         .stopped = watcher ? watcher->stopped : NULL,
-                         .user = watcher ? watcher->user : NULL};
+    t.job.stopped = watcher ? watcher->stopped : NULL;
+    t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();
-    ZT_TRY(zt_render(image, &left_out_count, &job, r->work, r->pool));
+    ZT_TRY(zt_render(image, &left_out_count, &t.job, r->work, r->pool));
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = left_out_count;
     if (left_out_count > 0)
@@ -125,4 +114,16 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",
                 frame, left_out_count);
     return ZT_OK;
+}
+
+zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
+                            const zt_watcher *watcher) {
+    zt_sampling own = r->sampling, sampling;
+    double begun_s = zt_clock_s();
+    ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
+    r->sampling = sampling;
+    zt_status status = zt_renderer_take(r, frame, image, watcher);
+    r->sampling = own;
+    ZT_TRY(status);
+    return zt_pacing_done(r, frame, &sampling, zt_clock_s() - begun_s);
 }

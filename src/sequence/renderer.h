@@ -16,6 +16,8 @@ typedef struct zt_frame_cost {
     int64_t left_out_count; /* samples that were not finite */
 } zt_frame_cost;
 
+typedef struct zt_pacing zt_pacing; /* sequence/pacing.h */
+
 struct zt_renderer {
     const zt_animation *animation;
     zt_output_format format;
@@ -26,9 +28,29 @@ struct zt_renderer {
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
     zt_render_work *work;
-    zt_frame_cost cost;  /* of the last frame */
+    zt_frame_cost cost; /* of the last frame */
+    const struct zt_manifest
+        *followed;       /* whose samples frames take; NULL: none's. Not its own */
+    zt_pacing *pacing;   /* of a budget; NULL: none */
     bool told_precision; /* that single precision, which was asked for, is not enough */
 };
+
+/* A frame on its way: what the scene is meanwhile, the same ready for rays, the lens, and how
+ * all that is rendered. In the frame's memory. */
+typedef struct zt_taking {
+    zt_exposure exposure;
+    zt_ready ready;
+    zt_lens *lens;
+    zt_render_job job;
+} zt_taking;
+
+/* All that comes before rendering. */
+zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t frame);
+
+/* Renders a frame with the renderer's sampling, whatever else says how many samples it takes.
+ */
+zt_status zt_renderer_take(zt_renderer *renderer, int64_t frame, zt_image *image,
+                           const zt_watcher *watcher);
 
 /* Says which precision a frame that is ready is rendered in, and why. */
 void zt_renderer_say_precision(zt_frame_precision *choice, const zt_renderer *renderer,

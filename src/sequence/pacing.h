@@ -1,0 +1,17 @@
+/* Which samples each frame takes: the renderer's own, those of a manifest that it follows, or
+ * what a budget of time allots. */
+#ifndef ZT_SEQUENCE_PACING_H
+#define ZT_SEQUENCE_PACING_H
+
+#include "sequence/renderer.h"
+
+/* ZT_EARGUMENT, told, where the manifest that is followed has no such frame. */
+zt_status zt_pacing_sampling(zt_sampling *sampling, const zt_renderer *renderer, int64_t frame);
+
+/* A frame has been rendered so, in so many seconds: notes it down where there is a budget. */
+zt_status zt_pacing_done(zt_renderer *renderer, int64_t frame, const zt_sampling *sampling,
+                         double took_s);
+
+void zt_pacing_free(zt_pacing **pacing);
+
+#endif
