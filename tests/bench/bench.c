@@ -17,6 +17,7 @@ int main(int argc, char **argv) {
     bench_starts(with_peers);
     bench_ways();
     bench_floors();
+    bench_features();
     bench_growth();
     bench_movie();
     return 0;
