@@ -14,6 +14,7 @@
 
 #include <cmocka.h>
 
+#include "chance.h"
 #include "scenes.h"
 #include "tracer/sampler.h"
 
@@ -31,20 +32,6 @@ static point point_of(uint32_t key, uint32_t dimension, uint32_t sample) {
 
 /* Keys as pixels have them. */
 static uint32_t pixel_key(int i) { return zt_sample_key(7, i % 512, i / 512); }
-
-/* What a chi-square statistic of perfect samples stays below (Wilson and Hilferty, "The
- * distribution of chi-square", 1931). */
-static double chi_square_limit(int freedom) {
-    double share = 2.0 / (9.0 * freedom), root = 1 - share + deviations * sqrt(share);
-    return freedom * root * root * root;
-}
-
-static double chi_square(const int *counts, int cell_count, double expected) {
-    double sum = 0;
-    for (int i = 0; i < cell_count; i++)
-        sum += (counts[i] - expected) * (counts[i] - expected) / expected;
-    return sum;
-}
 
 /* Sobol's second dimension by its direction numbers, as Bratley and Fox have it ("Algorithm
  * 659", 1988): those of the polynomial x + 1. */
@@ -108,7 +95,8 @@ static void uniform_over_keys(void **state) {
                 high[(u >> 20) * SIDE + (v >> 20)]++;
                 low[(u >> 8 & 15) * SIDE + (v >> 8 & 15)]++;
             }
-            double limit = chi_square_limit(CELLS - 1), expected = (double)PIXELS / CELLS;
+            double limit = chi_square_limit(CELLS - 1, deviations),
+                   expected = (double)PIXELS / CELLS;
             assert_true(chi_square(high, CELLS, expected) < limit);
             assert_true(chi_square(low, CELLS, expected) < limit);
         }
@@ -133,7 +121,7 @@ static void scrambling_is_nested(void **state) {
                 counts[(one >> (27 - bit) & 15) << 4 | (two >> (27 - bit) & 15)]++;
             }
             double got = chi_square(counts, 256, SEEDS / 256.0);
-            if (got >= chi_square_limit(255))
+            if (got >= chi_square_limit(255, deviations))
                 fail_msg("input %08x, bit %d: chi-square %.0f", inputs[i], bit, got);
         }
 }
@@ -226,7 +214,8 @@ static void ends_are_independent(void **state) {
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         correlation is = correlate(pairs[i], point_of),
                     should = correlate(pairs[i], point_by_coins);
-        if (is.unevenness >= chi_square_limit(CELLS - 1)) fail_msg("pair %zu: uneven", i);
+        if (is.unevenness >= chi_square_limit(CELLS - 1, deviations))
+            fail_msg("pair %zu: uneven", i);
         if (fabs(is.mean) >= deviations * sqrt(is.square / KEYS))
             fail_msg("pair %zu: correlation %g", i, is.mean);
         double error = hypot(is.square_error, should.square_error);
