@@ -378,8 +378,8 @@ static void compare_shadows(const zt_batch *rays, const stage *st, real3 lamp) {
     }
     wanted = shadow;
     plain_any(&wanted, st);
-    zt_bundle bundle =
-        zt_bundle_to(zt_range3(o->x, o->y, o->z, rays->count), lamp, source_of(rays));
+    zt_bundle bundle = zt_bundle_to(zt_range3(o->x, o->y, o->z, rays->count),
+                                    (zt_box){lamp, lamp}, source_of(rays));
     ZT_KERNEL_NAME(zt_occlude)(&shadow, &bundle, st->tracer);
     for (int i = 0; i < rays->count; i++) {
         bool same = (shadow.hit[i] >= 0) == (wanted.hit[i] >= 0);
@@ -537,7 +537,7 @@ static void compare_film(uint64_t *seed, int rounds, int least, int most, int ba
                 mirror_rays(probes, &st, work, batch % 3 == 0);
                 if (rays.count == 0) break;
                 for (int32_t l = 0; l < st.tracer->lamp_count; l++)
-                    compare_shadows(&rays, &st, st.tracer->lamps[l].position);
+                    compare_shadows(&rays, &st, st.tracer->lamps[l].poses->position);
                 compare_nearest(&rays, &st);
                 mirrored += rays.count;
             }

@@ -14,3 +14,15 @@ void zt_scene_worlds(xform *worlds, const zt_scene *scene, vec3 origin) {
         worlds[i] = xform_mul(&worlds[parent], &own);
     }
 }
+
+double zt_light_reach(const zt_light *light) {
+    switch (light->kind) {
+    case ZT_LIGHT_POINT:
+    case ZT_LIGHT_DISK:
+        return light->radius;
+    case ZT_LIGHT_RECTANGLE:
+        return hypot(light->width, light->height) / 2;
+    default:
+        return 0;
+    }
+}

@@ -134,6 +134,9 @@ typedef struct zt_light {
     double width, height; /* of rectangles: along their own x and y */
 } zt_light;
 
+/* How far from its position a light reaches in space; 0: it is a point, or nowhere. */
+double zt_light_reach(const zt_light *light);
+
 typedef enum zt_lens_kind {
     ZT_LENS_PERSPECTIVE,
     ZT_LENS_ORTHOGRAPHIC,

@@ -9,12 +9,12 @@
 #include "tracer/primitives.h"
 #include "tracer/ray.h"
 
-/* Rays from within a box: in directions of a range, or all to one point and no further; then
- * `directions` is the range of the whole way. */
+/* Rays from within a box: in directions of a range, or all to somewhere in a box and no
+ * further; then `directions` is the range of the whole way. */
 typedef struct zt_bundle {
     zt_box origins, directions;
     bool has_target;
-    real3 target;
+    zt_box target;
     int32_t source; /* the one on whose surface all rays begin, or -1 */
 } zt_bundle;
 
@@ -48,13 +48,14 @@ static inline zt_box zt_range3(const real *x, const real *y, const real *z, int 
     return box;
 }
 
-/* The bundle of rays from within a box to a point. */
-static inline zt_bundle zt_bundle_to(zt_box origins, real3 target, int32_t source) {
+/* The bundle of rays from within a box to points of another one. */
+static inline zt_bundle zt_bundle_to(zt_box origins, zt_box target, int32_t source) {
     zt_bundle b = {.origins = origins, .has_target = true, .target = target, .source = source};
-    b.directions.low = (real3){target.x - origins.high.x, target.y - origins.high.y,
-                               target.z - origins.high.z};
+    real3 low = target.low, high = target.high;
+    b.directions.low =
+        (real3){low.x - origins.high.x, low.y - origins.high.y, low.z - origins.high.z};
     b.directions.high =
-        (real3){target.x - origins.low.x, target.y - origins.low.y, target.z - origins.low.z};
+        (real3){high.x - origins.low.x, high.y - origins.low.y, high.z - origins.low.z};
     return b;
 }
 
@@ -104,7 +105,7 @@ static inline void zt_span(double *low, double *high, real3 n, const zt_box *box
 }
 
 /* False only where no ray of a bundle meets a plane: all begin on one side of it, and run away
- * from it or to a point on the same side. */
+ * from it or to points on the same side. */
 static inline bool zt_bundle_meets_plane(const zt_bundle *b, real3 n, real distance) {
     double low, high, slow, fast;
     zt_span(&low, &high, n, &b->origins);
@@ -113,9 +114,8 @@ static inline bool zt_bundle_meets_plane(const zt_bundle *b, real3 n, real dista
     bool below = high<(double)distance - room, above = low>(double) distance + room;
     if (!below && !above) return true;
     if (b->has_target) {
-        zt_box target = {b->target, b->target};
-        zt_span(&slow, &fast, n, &target);
-        room += (double)(zt_box_size(&target) * (BOX_ROUNDINGS * REAL_ROUNDING));
+        zt_span(&slow, &fast, n, &b->target);
+        room += (double)(zt_box_size(&b->target) * (BOX_ROUNDINGS * REAL_ROUNDING));
         return below ? !(fast < (double)distance - room) : !(slow > (double)distance + room);
     }
     zt_span(&slow, &fast, n, &b->directions);

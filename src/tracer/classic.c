@@ -144,7 +144,7 @@ static inline void shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
     const zt_origins *restrict from = &w->from;
     const zt_points *restrict p = &w->points;
     zt_batch *restrict shadow = &w->shadow;
-    const real3 at = lamp->position, power = lamp->power;
+    const real3 at = lamp->poses->position, power = lamp->poses->power;
     int padded = zt_batch_padded(p->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
         real vx = at.x - from->x[k], vy = at.y - from->y[k], vz = at.z - from->z[k];
@@ -196,7 +196,7 @@ static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box
     }
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
-        zt_bundle bundle = zt_bundle_to(*around, lamp->position, p->source);
+        zt_bundle bundle = zt_bundle_to(*around, lamp->bounds, p->source);
         if (!lamp->shadows || !may_meet(&bundle, tracer)) {
             shine(w, lamp, false);
             continue;
@@ -344,7 +344,7 @@ static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer) {
     zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
-        zt_bundle bundle = zt_bundle_to(around, lamp->position, w->points.source);
+        zt_bundle bundle = zt_bundle_to(around, lamp->bounds, w->points.source);
         shine(w, lamp, true);
         if (lamp->shadows) occlude(&w->shadow, &bundle, tracer);
         for (int k = 0; k < w->points.count; k++) {

@@ -1,4 +1,4 @@
-/* Prepares a scene: objects become primitives, lights become lamps, patterns find their places.
+/* Prepares a scene: objects become primitives, patterns find their places.
  * All is computed in double precision and rounded once, at the end. Compiled once for each
  * precision. */
 #include "tracer/prepare.h"
@@ -58,9 +58,10 @@ static void find_distances(zt_making *m, const zt_scene *scene) {
     e->near = ZT_REAL_NAME(zt_shape_distance)(m, (vec3){0, 0, 0});
     e->lamp = INFINITY;
     for (int32_t i = 0; i < scene->light_count; i++) {
-        if (scene->lights[i].kind != ZT_LIGHT_POINT) continue;
+        if (scene->lights[i].kind == ZT_LIGHT_AMBIENT) continue;
         vec3 lamp = vec3_sub(scene->lights[i].position, scene->camera.position);
-        double distance = ZT_REAL_NAME(zt_shape_distance)(m, lamp);
+        double distance =
+            fmax(ZT_REAL_NAME(zt_shape_distance)(m, lamp), zt_light_reach(&scene->lights[i]));
         if (!(distance < e->lamp)) continue;
         e->lamp = distance;
         e->lamp_light = i;
@@ -104,25 +105,6 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_scene *s
     tracer->placed_count = all->placed_count;
     tracer->weaves = all->weaves;
     tracer->has_patterns = all->weave_count > 0;
-    return ZT_OK;
-}
-
-static zt_status prepare_lights(zt_tracer *tracer, const zt_scene *scene, zt_arena *arena) {
-    zt_lamp *lamps = ZT_PUSH(arena, zt_lamp, (size_t)scene->light_count);
-    if (!lamps) return ZT_EMEMORY;
-    vec3 ambient = {0, 0, 0};
-    for (int32_t i = 0; i < scene->light_count; i++) {
-        const zt_light *light = &scene->lights[i];
-        vec3 power = vec3_scale(light->color, light->intensity);
-        if (light->kind == ZT_LIGHT_AMBIENT)
-            ambient = vec3_add(ambient, power);
-        else
-            lamps[tracer->lamp_count++] =
-                (zt_lamp){to_real3(vec3_sub(light->position, scene->camera.position)),
-                          to_real3(power), i, light->shadows};
-    }
-    tracer->ambient = to_real3(ambient);
-    tracer->lamps = lamps;
     return ZT_OK;
 }
 
@@ -211,7 +193,7 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
         return ZT_EMEMORY;
     *tracer = (zt_tracer){.reflection_depth = scene->reflection_depth};
     zt_scene_worlds(worlds, scene, scene->camera.position);
-    ZT_TRY(prepare_lights(tracer, scene, arena));
+    ZT_TRY(ZT_REAL_NAME(zt_prepare_lamps)(tracer, exposure, arena));
     ZT_TRY(prepare_objects(&all, tracer, scene, worlds, meshes));
     if (zt_accuracy_twins(all.extents, all.count, (double)TIE)) tracer->tie = TIE;
     *out = tracer;

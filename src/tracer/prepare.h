@@ -15,4 +15,8 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
 zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
                                           zt_arena *arena);
 
+/* The part of it that is the lamps. */
+zt_status ZT_REAL_NAME(zt_prepare_lamps)(zt_tracer *tracer, const zt_exposure *exposure,
+                                         zt_arena *arena);
+
 #endif

@@ -31,11 +31,30 @@ typedef struct zt_weave {
     real3 other;
 } zt_weave;
 
-typedef struct zt_lamp {
-    real3 position;
-    real3 power;   /* color * intensity */
-    int32_t light; /* its index in the scene */
+typedef enum zt_lamp_kind {
+    ZT_LAMP_POINT,
+    ZT_LAMP_BALL,
+    ZT_LAMP_DISK,
+    ZT_LAMP_RECTANGLE
+} zt_lamp_kind;
+
+/* A lamp at one moment. */
+typedef struct zt_lamp_pose {
+    real3 position; /* the middle */
+    real3 power;    /* color * intensity */
+    real3 x, y, z;  /* the axes of disks and rectangles: unit; they shine along -z */
+    real a, b; /* half as long as it is along x and along y; a: the radius of what is round */
     bool shadows;
+} zt_lamp_pose;
+
+typedef struct zt_lamp {
+    zt_lamp_kind kind;
+    int32_t light; /* its index in the scene */
+    bool moves;    /* its poses, one at each moment of the exposure, are not all the same */
+    bool has_size; /* at some moment: random numbers say where on it rays go */
+    bool shadows;  /* at some moment */
+    const zt_lamp_pose *poses;
+    zt_box bounds; /* around it at all times, roundings included; of a point its place */
 } zt_lamp;
 
 /* A mesh in its place: a point p relative to the camera is at row . p + at in the mesh's own
@@ -68,9 +87,10 @@ struct zt_tracer {
     const zt_placed_mesh *placed;
     int32_t placed_count;
     const zt_weave *weaves;
-    const zt_lamp *lamps; /* the point lights, in order */
+    const zt_lamp *lamps; /* the lights that are somewhere, in order */
     int32_t lamp_count;
-    real3 ambient; /* the sum of the ambient lights */
+    real3 ambient;         /* the sum of the ambient lights */
+    const real3 *ambients; /* at each moment of the exposure; NULL where it stays the same */
     int32_t reflection_depth;
     real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0
                */
