@@ -49,9 +49,9 @@ static zt_renderer *renderer_of(const zt_animation *animation, zt_precision prec
     return renderer;
 }
 
-static zt_frame_precision choice_of(zt_renderer *renderer, int64_t frame) {
-    zt_frame_precision choice;
-    assert_int_equal(zt_renderer_precision(&choice, renderer, frame), ZT_OK);
+static zt_frame_choices choice_of(zt_renderer *renderer, int64_t frame) {
+    zt_frame_choices choice;
+    assert_int_equal(zt_renderer_choices(&choice, renderer, frame), ZT_OK);
     return choice;
 }
 
@@ -67,13 +67,13 @@ static void by_frame(void **state) {
     (void)state;
     zt_animation *animation = film_of(descent, 4);
     zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
-    zt_frame_precision far = choice_of(renderer, 0), less = choice_of(renderer, 1),
-                       near = choice_of(renderer, 7);
+    zt_frame_choices far = choice_of(renderer, 0), less = choice_of(renderer, 1),
+                     near = choice_of(renderer, 7);
     assert_int_equal(far.precision, ZT_PRECISION_SINGLE);
-    assert_string_equal(far.text,
+    assert_string_equal(far.precision_text,
                         "single precision: its roundings stay below what can be seen");
     assert_int_equal(near.precision, ZT_PRECISION_DOUBLE);
-    assert_string_equal(near.text,
+    assert_string_equal(near.precision_text,
                         "double precision: the camera is 2 from ground, whose numbers reach "
                         "2e+06; single precision would be off by 1.9, and 0.0034 can be seen");
     assert_true(far.cause == less.cause);
@@ -132,9 +132,9 @@ static void reasons(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         zt_animation *animation = film_of(cases[i].lines, cases[i].reflections);
         zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
-        zt_frame_precision choice = choice_of(renderer, 0);
-        if (!strstr(choice.text, cases[i].text))
-            fail_msg("\"%s\" is not in: %s", cases[i].text, choice.text);
+        zt_frame_choices choice = choice_of(renderer, 0);
+        if (!strstr(choice.precision_text, cases[i].text))
+            fail_msg("\"%s\" is not in: %s", cases[i].text, choice.precision_text);
         zt_renderer_close(&renderer);
         zt_animation_free(&animation);
     }
@@ -163,7 +163,7 @@ static void warned_once(void **state) {
                                [ZT_PRECISION_SINGLE] =
                                    "single precision, as asked for, though the camera",
                                [ZT_PRECISION_DOUBLE] = "double precision, as asked for"};
-        assert_non_null(strstr(choice_of(renderer, 7).text, texts[p]));
+        assert_non_null(strstr(choice_of(renderer, 7).precision_text, texts[p]));
         zt_image_free(&image);
         zt_renderer_close(&renderer);
     }
@@ -181,9 +181,10 @@ static void ordinary_films(void **state) {
         zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
         int64_t count = zt_animation_film(animation)->frame_count;
         for (int64_t frame = 0; frame < count; frame += 5) {
-            zt_frame_precision choice = choice_of(renderer, frame);
+            zt_frame_choices choice = choice_of(renderer, frame);
             if (choice.precision != ZT_PRECISION_SINGLE)
-                fail_msg("%s, frame %d: %s", films.gl_pathv[i], (int)frame, choice.text);
+                fail_msg("%s, frame %d: %s", films.gl_pathv[i], (int)frame,
+                         choice.precision_text);
         }
         zt_renderer_close(&renderer);
         zt_animation_free(&animation);

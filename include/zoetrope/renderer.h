@@ -42,16 +42,20 @@ zt_output_format zt_renderer_format(const zt_renderer *renderer);
 zt_status zt_renderer_frame(zt_renderer *renderer, int64_t frame, zt_image *image,
                             const zt_watcher *watcher);
 
-/* In which precision a frame is rendered, and why. */
-typedef struct zt_frame_precision {
+/* What is chosen for a frame, and why: in which precision it is rendered, and at how many
+ * moments of the shutter's opening it is looked at; between them everything goes straight on.
+ */
+typedef struct zt_frame_choices {
     zt_precision precision; /* not ZT_PRECISION_AUTO */
-    int64_t cause;  /* the same for frames of which the same is to say but for numbers */
-    char text[320]; /* "double precision: the camera is 0.001 from ground, whose numbers ..." */
-} zt_frame_precision;
+    int moment_count;       /* 1 where nothing moves */
+    int64_t cause; /* the same for frames of which the same is to say but for numbers */
+    char precision_text[320]; /* "double precision: the camera is 0.001 from ground, ..." */
+    char motion_text[512];    /* "180 degrees open: 17 moments, because of wheel; ..."; "" where
+                                 the shutter opens for no time */
+} zt_frame_choices;
 
 /* Finds out without rendering. Fails as rendering does. */
-zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *renderer,
-                                int64_t frame);
+zt_status zt_renderer_choices(zt_frame_choices *choices, zt_renderer *renderer, int64_t frame);
 
 /* Renders frames first .. last, both included, to an output, writing behind the rendering. When
  * it is stopped or fails, the frames written before are complete, and the output can be closed.

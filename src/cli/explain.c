@@ -133,23 +133,23 @@ zt_status zt_explain(const zt_animation *animation, const char *question, zt_rep
     return status;
 }
 
-static void print_frames(int64_t first, int64_t last, const zt_frame_precision *p) {
-    if (first == last)
-        printf("frame %" PRId64 ": %s\n", first, p->text);
-    else
-        printf("frames %" PRId64 " to %" PRId64 ": %s\n", first, last, p->text);
+static void print_frames(int64_t first, int64_t last, const zt_frame_choices *choices) {
+    int indent = first == last ? printf("frame %" PRId64 ": ", first)
+                               : printf("frames %" PRId64 " to %" PRId64 ": ", first, last);
+    puts(choices->precision_text);
+    if (*choices->motion_text) printf("%*s%s\n", indent, "", choices->motion_text);
 }
 
-zt_status zt_explain_precision(const zt_animation *animation, int64_t first, int64_t last,
-                               zt_report *report) {
+zt_status zt_explain_frames(const zt_animation *animation, int64_t first, int64_t last,
+                            zt_report *report) {
     zt_render_settings settings = {0};
     zt_renderer *renderer;
-    zt_frame_precision told, next;
+    zt_frame_choices told, next;
     zt_status status =
         zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
-    if (status == ZT_OK) status = zt_renderer_precision(&told, renderer, first);
+    if (status == ZT_OK) status = zt_renderer_choices(&told, renderer, first);
     for (int64_t frame = first + 1; frame <= last && status == ZT_OK; frame++) {
-        status = zt_renderer_precision(&next, renderer, frame);
+        status = zt_renderer_choices(&next, renderer, frame);
         if (status != ZT_OK || next.cause == told.cause) continue;
         print_frames(first, frame - 1, &told);
         first = frame;

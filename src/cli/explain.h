@@ -8,9 +8,10 @@
  * property or time. */
 zt_status zt_explain(const zt_animation *animation, const char *question, zt_report *report);
 
-/* Tells in which precision frames first .. last are rendered and why, on one line as long as
- * there is the same to say. Fails as rendering does. */
-zt_status zt_explain_precision(const zt_animation *animation, int64_t first, int64_t last,
-                               zt_report *report);
+/* Tells what is chosen for frames first .. last, and why: the precision, and how the shutter's
+ * opening is divided. At once for frames of which the same is to say. Fails as rendering does.
+ */
+zt_status zt_explain_frames(const zt_animation *animation, int64_t first, int64_t last,
+                            zt_report *report);
 
 #endif

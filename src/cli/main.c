@@ -143,8 +143,8 @@ static zt_status check(const zt_animation *animation, zt_report *report) {
 
 static zt_status explain_frames(const zt_options *options, const zt_animation *animation,
                                 zt_report *report) {
-    return zt_explain_precision(animation, options->first,
-                                last_frame(options, zt_animation_film(animation)), report);
+    return zt_explain_frames(animation, options->first,
+                             last_frame(options, zt_animation_film(animation)), report);
 }
 
 /* What was asked for, of an animation that has been read. */

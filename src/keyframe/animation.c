@@ -5,11 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A copy of an array in the arena; NULL when out of memory. */
-static void *copy(zt_arena *arena, const void *array, size_t element_size, int32_t count) {
-    void *own = zt_arena_push_array(arena, element_size, (size_t)count);
-    if (own && count) memcpy(own, array, element_size * (size_t)count);
-    return own;
+static void copy(void *own, const void *array, size_t element_size, int32_t count) {
+    if (count) memcpy(own, array, element_size * (size_t)count);
 }
 
 /* Between its keys a curve may overshoot, but no radius becomes negative; nor is anything
@@ -82,11 +79,20 @@ zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, do
                               zt_arena *arena, zt_listener listener) {
     const zt_scene *rest = &animation->rest;
     *scene = *rest;
-    scene->materials =
-        copy(arena, rest->materials, sizeof *rest->materials, rest->material_count);
-    scene->lights = copy(arena, rest->lights, sizeof *rest->lights, rest->light_count);
-    scene->objects = copy(arena, rest->objects, sizeof *rest->objects, rest->object_count);
+    scene->materials = ZT_PUSH(arena, zt_material, (size_t)rest->material_count);
+    scene->lights = ZT_PUSH(arena, zt_light, (size_t)rest->light_count);
+    scene->objects = ZT_PUSH(arena, zt_object, (size_t)rest->object_count);
     if (!scene->materials || !scene->lights || !scene->objects) return ZT_EMEMORY;
+    return zt_animation_freeze_again(scene, animation, time_s, listener);
+}
+
+zt_status zt_animation_freeze_again(zt_scene *scene, const zt_animation *animation,
+                                    double time_s, zt_listener listener) {
+    const zt_scene *rest = &animation->rest;
+    scene->camera = rest->camera;
+    copy(scene->materials, rest->materials, sizeof *rest->materials, rest->material_count);
+    copy(scene->lights, rest->lights, sizeof *rest->lights, rest->light_count);
+    copy(scene->objects, rest->objects, sizeof *rest->objects, rest->object_count);
     zt_status result = ZT_OK;
     for (int32_t i = 0; i < animation->track_count; i++) {
         const zt_track *track = &animation->tracks[animation->order ? animation->order[i] : i];

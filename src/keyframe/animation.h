@@ -71,4 +71,8 @@ struct zt_animation {
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
                               zt_arena *arena, zt_listener listener);
 
+/* The same into the arrays of a scene that was frozen before, of the same animation. */
+zt_status zt_animation_freeze_again(zt_scene *scene, const zt_animation *animation,
+                                    double time_s, zt_listener listener);
+
 #endif

@@ -284,17 +284,18 @@ static zt_status choose_samples(climb *c) {
 static zt_status plan(climb *c) {
     zt_ladder *ladder = c->ladder;
     zt_renderer *r = c->renderer;
-    zt_frame_precision precision;
+    zt_frame_choices choices;
     int64_t frame = c->settings->frames[0];
     zt_exposure exposure;
+    zt_division division;
     ZT_TRY(choose_samples(c));
-    ZT_TRY(zt_renderer_precision(&precision, r, frame));
-    memcpy(ladder->precision, precision.text, sizeof ladder->precision);
+    ZT_TRY(zt_renderer_choices(&choices, r, frame));
+    memcpy(ladder->precision, choices.precision_text, sizeof ladder->precision);
     zt_arena_reset(&r->frame);
-    ZT_TRY(zt_shutter_expose(&exposure, c->animation, frame, ladder->height, &r->frame,
-                             c->listener));
+    ZT_TRY(zt_shutter_expose(&exposure, &division, c->animation, frame, ladder->height,
+                             &r->frame, c->listener));
     zt_ladder_say_left_out(ladder, &exposure);
-    ZT_TRY(zt_ladder_plan(ladder, &c->film, precision.precision,
+    ZT_TRY(zt_ladder_plan(ladder, &c->film, choices.precision,
                           c->precision == ZT_PRECISION_AUTO, c->settings->filters));
     int pair = zt_animation_film(c->animation)->frame_count > 1 ? 2 : 1;
     ladder->frame_count = pair * c->settings->frame_count;

@@ -72,8 +72,8 @@ zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     double begun_s = zt_clock_s();
     zt_arena_reset(&r->frame);
-    ZT_TRY(zt_shutter_expose(&t->exposure, r->animation, frame, r->format.height, &r->frame,
-                             r->listener));
+    ZT_TRY(zt_shutter_expose(&t->exposure, &t->division, r->animation, frame, r->format.height,
+                             &r->frame, r->listener));
     double frozen_s = zt_clock_s();
     ZT_TRY(
         zt_tracer_prepare(&t->ready, &t->exposure, r->precision,
@@ -88,10 +88,10 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     return ZT_OK;
 }
 
-zt_status zt_renderer_precision(zt_frame_precision *choice, zt_renderer *r, int64_t frame) {
+zt_status zt_renderer_choices(zt_frame_choices *choices, zt_renderer *r, int64_t frame) {
     zt_taking t;
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
-    zt_renderer_say_precision(choice, r, &t.ready, t.exposure.moments);
+    zt_renderer_say(choices, r, &t.ready, &t.exposure, &t.division);
     return ZT_OK;
 }
 
@@ -102,7 +102,7 @@ zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
     zt_taking t;
     int64_t left_out_count;
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
-    zt_renderer_doubt(r, &t.ready, t.exposure.moments, frame);
+    zt_renderer_doubt(r, &t.ready, &t.exposure, &t.division, frame);
     t.job.stopped = watcher ? watcher->stopped : NULL;
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();

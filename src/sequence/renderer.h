@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "base/pool.h"
 #include "render/render.h"
+#include "sequence/shutter.h"
 #include "tracer/meshes.h"
 
 /* What a frame took: seconds of wall time for each stage, and how much there was to do. */
@@ -33,12 +34,14 @@ struct zt_renderer {
         *followed;       /* whose samples frames take; NULL: none's. Not its own */
     zt_pacing *pacing;   /* of a budget; NULL: none */
     bool told_precision; /* that single precision, which was asked for, is not enough */
+    bool told_motion;    /* that something moves too fast */
 };
 
 /* A frame on its way: what the scene is meanwhile, the same ready for rays, the lens, and how
  * all that is rendered. In the frame's memory. */
 typedef struct zt_taking {
     zt_exposure exposure;
+    zt_division division;
     zt_ready ready;
     zt_lens *lens;
     zt_render_job job;
@@ -52,12 +55,14 @@ zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t 
 zt_status zt_renderer_take(zt_renderer *renderer, int64_t frame, zt_image *image,
                            const zt_watcher *watcher);
 
-/* Says which precision a frame that is ready is rendered in, and why. */
-void zt_renderer_say_precision(zt_frame_precision *choice, const zt_renderer *renderer,
-                               const zt_ready *ready, const zt_scene *scene);
+/* Says what was chosen for a frame that is ready, and why. */
+void zt_renderer_say(zt_frame_choices *choices, const zt_renderer *renderer,
+                     const zt_ready *ready, const zt_exposure *exposure,
+                     const zt_division *division);
 
-/* Warns, the first time only, where single precision was asked for and is not enough. */
-void zt_renderer_doubt(zt_renderer *renderer, const zt_ready *ready, const zt_scene *scene,
-                       int64_t frame);
+/* Warns, the first time only, where single precision was asked for and is not enough; and where
+ * something moves faster than an exposure can follow. */
+void zt_renderer_doubt(zt_renderer *renderer, const zt_ready *ready,
+                       const zt_exposure *exposure, const zt_division *division, int64_t frame);
 
 #endif

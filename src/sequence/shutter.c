@@ -1,19 +1,277 @@
 #include "sequence/shutter.h"
 
-#include "base/random.h"
+#include <float.h>
+#include <math.h>
 
-zt_status zt_shutter_expose(zt_exposure *exposure, const zt_animation *animation, int64_t frame,
-                            int height, zt_arena *arena, zt_listener listener) {
-    (void)height;
+#include "sequence/kinks.h"
+
+enum {
+    TESTS = 3, /* within an interval */
+    /* Within the first one, and moments next to keys: more where a scene is small. */
+    LOOKS_LEAST = 4,
+    LOOKS_MOST = 64,
+    FIRST_TESTS_MOST = 16,
+    LOOKS_WORK = 160 * 1000, /* objects and tracks */
+    /* Intervals that are still to be looked at: what may be halved 12 times, from each of the
+     * first ones. */
+    PENDING_MAX = LOOKS_MOST + 64
+};
+
+/* All moments of an opening take no more memory. */
+#define MEMORY_MAX (512.0 * 1024 * 1024)
+
+/* What never leaves its place by more than this share of what is allowed is still. */
+#define STILL (1.0 / 64)
+
+typedef struct opening {
+    const zt_animation *animation;
+    zt_arena *arena;
+    zt_listener listener;
+    int64_t frame;
+    zt_chords chords;
+    int32_t *splits;  /* for each part, how often it asked */
+    zt_glance *spare; /* a list of looks to use again */
+    const zt_glance *first;
+    bool moves;
+    zt_glance *pending[PENDING_MAX]; /* moments still to come, the next one last */
+    int pending_count;
+    zt_glance *moments[ZT_TIME_CELLS + 1];
+    bool steps[ZT_TIME_CELLS + 1];
+    int32_t moment_count, moments_most;
+    zt_gap worst, worst_step;
+    int32_t step_moment; /* before the step that is largest */
+} opening;
+
+/* The time of a moment, in seconds. */
+static double time_of(const zt_animation *animation, int64_t frame, double cell) {
+    const zt_film *film = &animation->film;
+    const zt_shutter *shutter = &film->shutter;
+    double share = shutter->open + cell / ZT_TIME_CELLS * (shutter->close - shutter->open);
+    return zt_rate_time(film->rate, frame) + share * film->rate.den / film->rate.num;
+}
+
+static zt_status look_at(zt_glance **out, opening *o, double cell) {
+    zt_glance *look = o->spare;
+    if (look)
+        o->spare = look->next;
+    else
+        look = zt_glance_push(&o->chords, o->arena);
+    if (!look) return ZT_EMEMORY;
+    *out = look;
+    look->cell = cell;
+    ZT_TRY(zt_glance_at(look, &o->chords, time_of(o->animation, o->frame, cell), o->listener));
+    if (!o->moves)
+        o->moves = zt_chords_gap(&o->chords, o->first, o->first, look, 0).share > STILL;
+    return ZT_OK;
+}
+
+static void give_back(opening *o, zt_glance *look) {
+    look->next = o->spare;
+    o->spare = look;
+}
+
+/* Where in an interval it is tested, as shares: first in the middle, then at multiples of the
+ * golden section, which no period has. */
+static double test_place(int test) {
+    const double golden = 0.38196601125010515;
+    return test == 0 ? 0.5 : test * golden - floor(test * golden);
+}
+
+/* Tests the interval between two moments: `split` becomes the first look that is off its way,
+ * or NULL. */
+static zt_status test(zt_glance **split, zt_gap *gap, opening *o, const zt_glance *a,
+                      const zt_glance *b, int tests) {
+    double wide = b->cell - a->cell, before = -1;
+    *split = NULL;
+    *gap = (zt_gap){0, -1};
+    for (int i = 0; i < tests; i++) {
+        double cell = a->cell + rint(test_place(i) * wide);
+        if (cell == before || cell <= a->cell || cell >= b->cell) continue;
+        before = cell;
+        zt_glance *look;
+        ZT_TRY(look_at(&look, o, cell));
+        zt_gap here = zt_chords_gap(&o->chords, a, b, look, (cell - a->cell) / wide);
+        if (here.share > gap->share) *gap = here;
+        if (here.share > 1) {
+            *split = look;
+            return ZT_OK;
+        }
+        give_back(o, look);
+    }
+    return ZT_OK;
+}
+
+/* Between neighboring multiples: what is off its way there goes too fast, or changes at once;
+ * then it is as at one end or as at the other. */
+static zt_status test_narrow(bool *step, zt_gap *gap, opening *o, const zt_glance *a,
+                             const zt_glance *b) {
+    zt_gap left = {0, -1};
+    *gap = left;
+    for (int i = 1; i <= TESTS; i++) {
+        double at = test_place(i);
+        zt_glance *look;
+        ZT_TRY(look_at(&look, o, a->cell + at));
+        zt_gap here = zt_chords_gap(&o->chords, a, b, look, at);
+        zt_gap as_a = zt_chords_gap(&o->chords, a, a, look, 0);
+        zt_gap as_b = zt_chords_gap(&o->chords, b, b, look, 0);
+        give_back(o, look);
+        if (here.share > gap->share) *gap = here;
+        if (as_b.share < as_a.share) as_a = as_b;
+        if (as_a.share > left.share) left = as_a;
+    }
+    *step = gap->share > 1;
+    if (!*step) return ZT_OK;
+    if (gap->share > o->worst_step.share) {
+        o->worst_step = *gap;
+        o->step_moment = o->moment_count - 1;
+    }
+    *gap = left;
+    return ZT_OK;
+}
+
+/* The next moment is taken, or another one before it is. */
+static zt_status advance(opening *o) {
+    zt_glance *a = o->moments[o->moment_count - 1], *b = o->pending[o->pending_count - 1];
+    bool narrow = b->cell - a->cell <= 1, step = false;
+    zt_glance *split = NULL;
+    zt_gap gap;
+    if (narrow)
+        ZT_TRY(test_narrow(&step, &gap, o, a, b));
+    else
+        ZT_TRY(test(&split, &gap, o, a, b, TESTS));
+    if (split && o->moment_count + o->pending_count < o->moments_most) {
+        o->splits[gap.part]++;
+        o->pending[o->pending_count++] = split;
+        return ZT_OK;
+    }
+    if (split) give_back(o, split);
+    if (gap.share > o->worst.share) o->worst = gap;
+    o->steps[o->moment_count - 1] = step;
+    o->moments[o->moment_count++] = b;
+    o->pending_count--;
+    return ZT_OK;
+}
+
+/* The first intervals: the whole opening, divided by keys that fall into it. */
+static zt_status begin(opening *o) {
+    const zt_animation *animation = o->animation;
+    int work = animation->rest.object_count + animation->track_count + 1;
+    int looks = LOOKS_WORK / work, cells[LOOKS_MOST];
+    looks = looks < LOOKS_LEAST ? LOOKS_LEAST : looks > LOOKS_MOST ? LOOKS_MOST : looks;
+    zt_glance *last, *split;
+    zt_gap gap;
+    o->moments[o->moment_count++] = (zt_glance *)o->first;
+    ZT_TRY(look_at(&last, o, ZT_TIME_CELLS));
+    o->pending[o->pending_count++] = last;
+    int count = zt_kinks(cells, looks, animation, time_of(animation, o->frame, 0),
+                         time_of(animation, o->frame, ZT_TIME_CELLS));
+    while (count-- > 0) ZT_TRY(look_at(&o->pending[o->pending_count++], o, cells[count]));
+    if (o->pending_count > 1) return ZT_OK;
+    int tests = looks < FIRST_TESTS_MOST ? looks : FIRST_TESTS_MOST;
+    ZT_TRY(test(&split, &gap, o, o->first, last, tests));
+    if (!split) return ZT_OK;
+    o->splits[gap.part]++;
+    o->pending[o->pending_count++] = split;
+    return ZT_OK;
+}
+
+static zt_status divide(opening *o) {
+    double size = (double)zt_chords_glance_size(&o->chords);
+    o->moments_most = ZT_TIME_CELLS + 1;
+    if (MEMORY_MAX / size < o->moments_most) o->moments_most = (int32_t)(MEMORY_MAX / size);
+    o->splits = ZT_PUSH(o->arena, int32_t, (size_t)o->chords.part_count);
+    if (!o->splits) return ZT_EMEMORY;
+    ZT_TRY(begin(o));
+    while (o->pending_count > 0) ZT_TRY(advance(o));
+    return ZT_OK;
+}
+
+/* ---- what comes of it ---------------------------------------------------------------------*/
+
+static zt_status write_exposure(zt_exposure *exposure, const opening *o) {
+    size_t count = (size_t)o->moment_count;
+    zt_scene *moments = ZT_PUSH(o->arena, zt_scene, count);
+    double *times = ZT_PUSH(o->arena, double, count);
+    bool *steps = ZT_PUSH(o->arena, bool, count);
+    if (!moments || !times || !steps) return ZT_EMEMORY;
+    for (size_t i = 0; i < count; i++) {
+        moments[i] = o->moments[i]->scene;
+        times[i] = o->moments[i]->cell / ZT_TIME_CELLS;
+        steps[i] = o->steps[i];
+    }
+    *exposure = (zt_exposure){moments, times, steps, o->moment_count};
+    return ZT_OK;
+}
+
+/* The track whose value changes most between two moments, for its size. */
+static int32_t track_between(const zt_animation *animation, const zt_scene *a,
+                             const zt_scene *b) {
+    double most = 0;
+    int32_t found = -1;
+    for (int32_t i = 0; i < animation->track_count; i++) {
+        const zt_track *track = &animation->tracks[i];
+        double x[ZT_VALUE_WIDTH_MAX], y[ZT_VALUE_WIDTH_MAX], off = 0, size = 0;
+        zt_property_get(x, track->property, a, track->index);
+        zt_property_get(y, track->property, b, track->index);
+        for (int c = 0; c < zt_value_width(track->property->kind); c++) {
+            off = fmax(off, fabs(y[c] - x[c]));
+            size = fmax(size, fmax(fabs(x[c]), fabs(y[c])));
+        }
+        if (!(off > most * size)) continue;
+        most = off / size;
+        found = i;
+    }
+    return found;
+}
+
+static void write_division(zt_division *division, const opening *o) {
+    const zt_chords *chords = &o->chords;
+    int32_t most = -1;
+    for (int32_t i = 0; i < chords->part_count; i++)
+        if (o->splits[i] > (most < 0 ? 0 : o->splits[most])) most = i;
+    division->moment_count = o->moment_count;
+    division->asked = most >= 0;
+    if (most >= 0) division->most = zt_chords_thing(chords, most);
+    division->off = o->worst.share;
+    if (o->worst.part >= 0) division->worst = zt_chords_thing(chords, o->worst.part);
+    for (int32_t i = 0; i < o->moment_count - 1; i++) division->step_count += o->steps[i];
+    if (division->step_count > 0)
+        division->stepping = track_between(o->animation, &o->moments[o->step_moment]->scene,
+                                           &o->moments[o->step_moment + 1]->scene);
+}
+
+static zt_status expose_moment(zt_exposure *exposure, const zt_animation *animation,
+                               double time_s, zt_arena *arena, zt_listener listener) {
     zt_scene *scene = ZT_PUSH(arena, zt_scene, 1);
     if (!scene) return ZT_EMEMORY;
     *exposure = zt_exposure_of(scene);
-    return zt_animation_freeze(scene, animation, zt_rate_time(animation->film.rate, frame),
-                               arena, listener);
+    return zt_animation_freeze(scene, animation, time_s, arena, listener);
 }
 
-void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure *exposure,
-                     const zt_sampling *sampling) {
-    (void)exposure;
-    *place_key = *frame_key = zt_random_key(0, sampling->seed);
+zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
+                            const zt_animation *animation, int64_t frame, int height,
+                            zt_arena *arena, zt_listener listener) {
+    const zt_shutter *shutter = &animation->film.shutter;
+    double open_s = time_of(animation, frame, 0);
+    *division = (zt_division){.moment_count = 1, .stepping = -1};
+    if (shutter->close <= shutter->open || animation->track_count == 0)
+        return expose_moment(exposure, animation, open_s, arena, listener);
+    opening *o = ZT_PUSH(arena, opening, 1);
+    zt_glance *first;
+    if (!o) return ZT_EMEMORY;
+    *o = (opening){.animation = animation,
+                   .arena = arena,
+                   .listener = listener,
+                   .frame = frame,
+                   .worst = {0, -1},
+                   .worst_step = {0, -1}};
+    ZT_TRY(zt_chords_open(&o->chords, &first, animation, open_s, height, arena, listener));
+    o->first = first;
+    ZT_TRY(divide(o));
+    if (o->moves) {
+        write_division(division, o);
+        return write_exposure(exposure, o);
+    }
+    *exposure = zt_exposure_of(&first->scene);
+    return ZT_OK;
 }

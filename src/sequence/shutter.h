@@ -6,11 +6,31 @@
 #include "base/arena.h"
 #include "keyframe/animation.h"
 #include "scene/exposure.h"
+#include "sequence/chords.h"
+
+/* Why an opening was divided as it was. */
+typedef struct zt_division {
+    int32_t moment_count, step_count;
+    bool asked;         /* something asked for more than a first and a last moment: */
+    zt_part_thing most; /* what did so most often */
+    double off; /* how far anything is off its way at most, as a share of what is allowed;
+                   above 1 where the limits of bisection were reached, */
+    zt_part_thing worst; /* by this */
+    int32_t stepping;    /* the track that changes at once, or -1 */
+} zt_division;
 
 /* What the scene is while the shutter is open for a frame, for a picture so many pixels high.
- * Fails as zt_animation_freeze does. */
-zt_status zt_shutter_expose(zt_exposure *exposure, const zt_animation *animation, int64_t frame,
-                            int height, zt_arena *arena, zt_listener listener);
+ *
+ * The opening is bisected at multiples of 1/ZT_TIME_CELLS until, between two moments, nothing
+ * leaves the straight way by more than ZT_CHORD_PIXELS as the camera sees it, and no color by
+ * more than ZT_CHORD_SHARE; so it was found at some points of time between them, spread
+ * unevenly, at least three. What moves less than can be seen is still. What changes at once is
+ * shut in between two neighboring multiples. Scenes that take too much memory, and what is too
+ * fast for neighboring multiples, end it earlier, which `division` tells. Fails as
+ * zt_animation_freeze does. */
+zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
+                            const zt_animation *animation, int64_t frame, int height,
+                            zt_arena *arena, zt_listener listener);
 
 /* What the random numbers of a frame are keyed by: the places of samples in their pixels by the
  * seed and the camera, all others by the seed and all of the exposure, so that noise changes
