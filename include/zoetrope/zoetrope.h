@@ -10,6 +10,7 @@
 #include <zoetrope/drawing.h>
 #include <zoetrope/explain.h>
 #include <zoetrope/image.h>
+#include <zoetrope/manifest.h>
 #include <zoetrope/output.h>
 #include <zoetrope/rate.h>
 #include <zoetrope/renderer.h>

@@ -9,6 +9,7 @@
 #define ONE_FRAME                                                                              \
     (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION) |       \
      BIT(PRESET))
+#define FINISHED (ONE_FRAME | BIT(TIME) | BIT(TIME_PER_FRAME) | BIT(MANIFEST))
 
 static const char images[] =
     "  film.mp4         a movie, H.264\n"
@@ -21,9 +22,9 @@ static const char drawings[] = "  curves.svg       a drawing\n"
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
-                           images, ONE_FRAME | BIT(FRAMES)},
+                           images, FINISHED | BIT(FRAMES)},
     [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
-                          "output/NAME.NNNN.png", images, ONE_FRAME},
+                          "output/NAME.NNNN.png", images, FINISHED},
     [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
                             "A quick movie: a quarter of the size, one sample a pixel",
                             "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},
@@ -46,6 +47,16 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                           "only these frames, or one (7); the first is 0"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
+    [ZT_OPTION_TIME] = {"time", 0, "20min",
+                        "choose samples so that all frames take about as long: ms s min h"},
+    [ZT_OPTION_TIME_PER_FRAME] = {"time-per-frame", 0, "2s",
+                                  "choose samples so that each frame takes about as long"},
+    [ZT_OPTION_MANIFEST] =
+        {"manifest", 0, "FILE",
+         "samples and size as they were: TARGET.manifest of a run with --time"},
+    [ZT_OPTION_PIXEL] = {"pixel", 0, "200,120",
+                         "print how this pixel's samples come about, and no image"},
+    [ZT_OPTION_SAMPLE] = {"sample", 0, "3", "of the pixel, this one alone"},
     [ZT_OPTION_THREADS] = {"threads", 0, "N",
                            "instead of one a core; the images stay the same"},
     [ZT_OPTION_PRECISION] = {"precision", 0, "double",

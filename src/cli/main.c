@@ -92,21 +92,43 @@ static void say_interrupted(const zt_progress *progress, const char *target) {
                       progress->done_count, progress->total_count);
 }
 
+/* Renders the frames, in the time that there may be. */
+static zt_status render_frames(zt_renderer *renderer, const zt_budget *budget, int64_t first,
+                               int64_t last, zt_output *output, zt_progress *progress) {
+    zt_watcher watcher = {show_progress, stopped, progress};
+    if (budget->film_s > 0 || budget->frame_s > 0) {
+        zt_status status = zt_renderer_budget(renderer, first, last, budget, &watcher);
+        if (status != ZT_OK) return status;
+    }
+    return zt_renderer_sequence(renderer, first, last, output, &watcher);
+}
+
+/* Beside the target: what its frames took. */
+static zt_status write_manifest(const zt_renderer *renderer, const char *description,
+                                const char *target, zt_report *report) {
+    char *path = NULL;
+    if (asprintf(&path, "%s.manifest", target) < 0) return ZT_EMEMORY;
+    zt_status status = zt_manifest_write(zt_renderer_manifest(renderer), path, description,
+                                         zt_report_listener(report));
+    free(path);
+    return status;
+}
+
 /* Opens the output, renders the frames into it, and closes it whatever happened. */
-static zt_status write_frames(zt_renderer *renderer, int64_t first, int64_t last,
-                              const char *target, const zt_output_option *wishes,
-                              zt_report *report) {
+static zt_status write_frames(zt_renderer *renderer, const zt_options *options, int64_t first,
+                              int64_t last, const char *target, zt_report *report) {
     zt_output_format format = zt_renderer_format(renderer);
     format.frame_count = last - first + 1;
     zt_output *output = NULL;
     listen_for_interrupts();
-    zt_status status =
-        zt_output_open(&output, target, &format, wishes, zt_report_listener(report));
+    zt_status status = zt_output_open(&output, target, &format, options->output_options,
+                                      zt_report_listener(report));
     if (status != ZT_OK) return status;
     zt_progress progress = zt_progress_begin(report, last - first + 1);
-    zt_watcher watcher = {show_progress, stopped, &progress};
-    status = zt_renderer_sequence(renderer, first, last, output, &watcher);
+    status = render_frames(renderer, &options->budget, first, last, output, &progress);
     zt_status closed = zt_output_close(&output);
+    if (closed == ZT_OK && progress.done_count > 0 && zt_renderer_manifest(renderer))
+        closed = write_manifest(renderer, options->file, target, report);
     if (closed != ZT_OK) return closed;
     if (status == ZT_OK) zt_progress_end(&progress, target);
     if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
@@ -117,8 +139,8 @@ static int64_t last_frame(const zt_options *options, const zt_film *film) {
     return options->all_frames ? film->frame_count - 1 : options->last;
 }
 
-static zt_status render(const zt_options *options, const zt_animation *animation,
-                        zt_report *report) {
+static zt_status render(const zt_options *options, const zt_manifest *manifest,
+                        const zt_animation *animation, zt_report *report) {
     const zt_film *film = zt_animation_film(animation);
     int64_t first = options->first, last = last_frame(options, film);
     char *target = zt_options_target(options);
@@ -127,8 +149,8 @@ static zt_status render(const zt_options *options, const zt_animation *animation
     zt_renderer *renderer = NULL;
     zt_status status =
         zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
-    if (status == ZT_OK)
-        status = write_frames(renderer, first, last, target, options->output_options, report);
+    if (status == ZT_OK && manifest) zt_renderer_follow(renderer, manifest);
+    if (status == ZT_OK) status = write_frames(renderer, options, first, last, target, report);
     zt_renderer_close(&renderer);
     free(target);
     return status;
@@ -148,8 +170,8 @@ static zt_status explain_frames(const zt_options *options, const zt_animation *a
 }
 
 /* What was asked for, of an animation that has been read. */
-static zt_status run(const zt_options *options, const zt_animation *animation,
-                     zt_report *report) {
+static zt_status run(const zt_options *options, const zt_manifest *manifest,
+                     const zt_animation *animation, zt_report *report) {
     const zt_film *film = zt_animation_film(animation);
     if (options->last >= film->frame_count) {
         zt_report_say(report, ZT_ERROR,
@@ -166,8 +188,20 @@ static zt_status run(const zt_options *options, const zt_animation *animation,
     case ZT_COMMAND_CURVES:
         return zt_curves(options, animation, report);
     default:
-        return render(options, animation, report);
+        return render(options, manifest, animation, report);
     }
+}
+
+/* The manifest that is to be followed, and what of the options it decides. */
+static zt_status read_manifest(zt_manifest **manifest, zt_options *options, zt_report *report) {
+    if (!options->manifest) return ZT_OK;
+    zt_status status =
+        zt_manifest_read(manifest, options->manifest, zt_report_listener(report));
+    if (status != ZT_OK) return status;
+    zt_manifest_settings(&options->settings, *manifest);
+    if (options->all_frames) zt_manifest_range(&options->first, &options->last, *manifest);
+    options->all_frames = false;
+    return ZT_OK;
 }
 
 static int exit_code(zt_status status, zt_report *report) {
@@ -201,9 +235,13 @@ int main(int argc, char **argv) {
     }
     report.quiet = options.quiet;
     zt_animation *animation = NULL;
-    zt_status status = zt_animation_read(&animation, options.file, options.sets,
-                                         options.set_count, zt_report_listener(&report));
-    if (status == ZT_OK) status = run(&options, animation, &report);
+    zt_manifest *manifest = NULL;
+    zt_status status = read_manifest(&manifest, &options, &report);
+    if (status == ZT_OK)
+        status = zt_animation_read(&animation, options.file, options.sets, options.set_count,
+                                   zt_report_listener(&report));
+    if (status == ZT_OK) status = run(&options, manifest, animation, &report);
+    zt_manifest_free(&manifest);
     zt_animation_free(&animation);
     return exit_code(status, &report);
 }

@@ -223,6 +223,80 @@ static bool read_precision(zt_render_settings *settings, const char *text, zt_re
     return false;
 }
 
+/* "2 s", "1.5 min": seconds. */
+static bool read_duration(double *seconds, zt_option option, const char *text,
+                          zt_report *report) {
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+    size_t length = strspn(text, "0123456789.");
+    char *end;
+    double number = strtod(text, &end);
+    const char *unit = text + length + strspn(text + length, " ");
+    for (int i = 0; i < 4 && length > 0 && end == text + length; i++)
+        if (strcmp(unit, units[i].name) == 0) *seconds = number * units[i].seconds;
+    if (*seconds > 0 && *seconds < 1e10) return true;
+    zt_report_say(report, ZT_ERROR,
+                  "--%s %s: must be a time, such as 500 ms, 2 s, 20 min or 8 h",
+                  zt_options_known[option].name, text);
+    return false;
+}
+
+/* "200,120": column and row. */
+static bool read_pixel(zt_options *options, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t column = 0, row = 0;
+    options->replays = read_digits(&column, &rest, ZT_IMAGE_SIDE_MAX - 1) && *rest++ == ',' &&
+                       read_digits(&row, &rest, ZT_IMAGE_SIDE_MAX - 1) && !*rest;
+    options->column = (int)column;
+    options->row = (int)row;
+    if (!options->replays)
+        zt_report_say(
+            report, ZT_ERROR,
+            "--pixel %s: must be column and row, counted from 0 at the top left, such "
+            "as 200,120",
+            text);
+    return options->replays;
+}
+
+static bool read_sample(zt_options *options, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t number = 0;
+    bool good = read_digits(&number, &rest, SAMPLES_MAX - 1) && !*rest;
+    if (!good)
+        zt_report_say(report, ZT_ERROR, "--sample %s: must be a number from 0 to %d", text,
+                      SAMPLES_MAX - 1);
+    options->sample = (int)number;
+    return good;
+}
+
+/* Options that contradict each other, or say something only with another one. */
+static bool fit_together(const char *const *values, zt_report *report) {
+    static const zt_option exclusive[][2] = {{ZT_OPTION_TIME, ZT_OPTION_TIME_PER_FRAME},
+                                             {ZT_OPTION_TIME, ZT_OPTION_SAMPLES},
+                                             {ZT_OPTION_TIME, ZT_OPTION_MANIFEST},
+                                             {ZT_OPTION_TIME, ZT_OPTION_PIXEL},
+                                             {ZT_OPTION_TIME_PER_FRAME, ZT_OPTION_SAMPLES},
+                                             {ZT_OPTION_TIME_PER_FRAME, ZT_OPTION_MANIFEST},
+                                             {ZT_OPTION_TIME_PER_FRAME, ZT_OPTION_PIXEL},
+                                             {ZT_OPTION_MANIFEST, ZT_OPTION_SAMPLES},
+                                             {ZT_OPTION_PIXEL, ZT_OPTION_OUTPUT},
+                                             {ZT_OPTION_PIXEL, ZT_OPTION_PRESET}};
+    for (size_t i = 0; i < sizeof exclusive / sizeof *exclusive; i++) {
+        zt_option a = exclusive[i][0], b = exclusive[i][1];
+        if (!values[a] || !values[b]) continue;
+        zt_report_say(report, ZT_ERROR, "--%s and --%s do not go together",
+                      zt_options_known[a].name, zt_options_known[b].name);
+        return false;
+    }
+    if (values[ZT_OPTION_SAMPLE] && !values[ZT_OPTION_PIXEL]) {
+        zt_report_say(report, ZT_ERROR, "--sample is one of a --pixel's");
+        return false;
+    }
+    return true;
+}
+
 /* Options that are the output's own, by the same names. */
 static const zt_option of_output[] = {ZT_OPTION_PRESET};
 
@@ -245,12 +319,22 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
         }
     const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
                *samples = values[ZT_OPTION_SAMPLES], *threads = values[ZT_OPTION_THREADS],
-               *precision = values[ZT_OPTION_PRECISION];
+               *precision = values[ZT_OPTION_PRECISION], *time = values[ZT_OPTION_TIME],
+               *frame_time = values[ZT_OPTION_TIME_PER_FRAME], *pixel = values[ZT_OPTION_PIXEL],
+               *sample = values[ZT_OPTION_SAMPLE];
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
+    options->manifest = values[ZT_OPTION_MANIFEST];
+    options->sample = -1;
     pass_on(options, values);
-    return (!frames || read_frames(options, frames, report)) &&
+    return fit_together(values, report) &&
+           (!time || read_duration(&options->budget.film_s, ZT_OPTION_TIME, time, report)) &&
+           (!frame_time || read_duration(&options->budget.frame_s, ZT_OPTION_TIME_PER_FRAME,
+                                         frame_time, report)) &&
+           (!pixel || read_pixel(options, pixel, report)) &&
+           (!sample || read_sample(options, sample, report)) &&
+           (!frames || read_frames(options, frames, report)) &&
            (!size || read_size(settings, size, report)) &&
            (!precision || read_precision(settings, precision, report)) &&
            (!samples ||

@@ -22,6 +22,11 @@ typedef struct zt_options {
     bool all_frames;                                  /* else first .. last, both included */
     int64_t first, last;                              /* 0 <= first <= last */
     zt_render_settings settings;                      /* zero where not given */
+    zt_budget budget;                                 /* likewise */
+    const char *manifest;                             /* to go by, or NULL */
+    bool replays;                                     /* a pixel, instead of an image */
+    int column, row;                                  /* of it */
+    int sample;                                       /* of it; -1: all */
     zt_output_option output_options[ZT_OPTION_COUNT]; /* the last has no name */
     bool quiet;
     zt_override sets[ZT_SETS_MAX]; /* what --set replaces in the description */

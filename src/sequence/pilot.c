@@ -108,6 +108,22 @@ static zt_status measure(double *error, taken *t, pilot *p, int64_t frame, int s
     return ZT_OK;
 }
 
+/* Looks closer, with ever more samples while there are so many seconds. */
+static zt_status gauge(pilot *p, int64_t frame, double share_s) {
+    for (int samples = 2; samples <= SAMPLES_MAX; samples *= 2) {
+        zt_sampling sampling = p->plan->sampling;
+        taken t;
+        double next_s = p->fixed_s + samples * p->unit_s;
+        if (next_s > share_s) return ZT_OK;
+        sampling.min = sampling.max = samples;
+        ZT_TRY(take(&t, p, frame, p->images[0], sampling));
+        share_s -= t.fixed_s + t.render_s;
+        p->fixed_s = t.fixed_s;
+        p->unit_s = t.render_s / samples;
+    }
+    return ZT_OK;
+}
+
 /* How many samples there is time for in each of so many frames: a power of two, or 0. */
 static int samples_for(const pilot *p, int frame_count) {
     int samples = SAMPLES_MAX;
@@ -132,7 +148,9 @@ static void set_shares(zt_plan *plan, const double *errors, double slope) {
 
 static zt_status pilot_even(pilot *p) {
     zt_plan *plan = p->plan;
-    int count = most_frames(plan), samples = samples_for(p, count);
+    int count = most_frames(plan), samples;
+    ZT_TRY(gauge(p, spread_frame(plan, 0, 1), count > 1 ? p->left_s / 5 : p->left_s));
+    samples = count > 1 ? samples_for(p, count) : 0;
     while (samples < 8 && count > 1) samples = samples_for(p, --count);
     plan->cost_count = count;
     double errors[ZT_COSTS_MAX] = {0}, sum = 0, rough_sum = 0;
