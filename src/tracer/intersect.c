@@ -5,20 +5,15 @@
 
 #include <math.h>
 
+#include "tracer/motion_meet.h"
 #include "tracer/search.h"
-
-/* 0, or how a ray leaves the surface of primitive number `index`. */
-static inline int32_t leaving(int32_t source, int32_t index) {
-    int32_t how = (source & 1) ? -1 : 1;
-    return (source >> 1) == index ? how : 0;
-}
 
 /* The loops of each kind of primitive: nearest hits, whether there is one at all, and nearest
  * hits of some lanes. Where things lie on each other (tie > 0), a later primitive's hit counts
  * where it is nearer by more than roundings, and an earlier one's where it is no further. */
 #define DISTANCE(kind, i)                                                                      \
     zt_##kind##_distance(&own, from->x[i], from->y[i], from->z[i], rays->dx[i], rays->dy[i],   \
-                         rays->dz[i], leaving(from->source[i], index))
+                         rays->dz[i], zt_leaving(from->source[i], index))
 #define DEFINE_LOOPS(kind)                                                                     \
     static void kind##_nearest(zt_batch *restrict rays, const zt_origins *restrict from,       \
                                const zt_primitive *p, int32_t index, int count, real tie) {    \
@@ -90,7 +85,9 @@ static lanes_loop *const lanes_loops[ZT_PRIMITIVE_KIND_COUNT] = LOOPS(lanes);
 void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int32_t index,
                                    int first, bool any) {
     const zt_primitive *p = &tracer->primitives[index];
-    if (any)
+    if (p->poses)
+        ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, index, first, first + ZT_BATCH_LANES, any);
+    else if (any)
         any_loops[p->kind](rays, rays->from, p, index, first, first + ZT_BATCH_LANES);
     else
         lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie);
@@ -101,6 +98,7 @@ void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int3
 static bool may_meet(const zt_bundle *b, const zt_primitive *p, int32_t index) {
     bool bulges = p->kind == ZT_PRIMITIVE_TORUS || p->kind == ZT_PRIMITIVE_MESH;
     if (b->source == index && !bulges) return false;
+    if (p->kind == ZT_PRIMITIVE_PLANE && p->poses) return true;
     return p->kind == ZT_PRIMITIVE_PLANE
                ? zt_bundle_meets_plane(b, p->plane.normal, p->plane.distance)
                : zt_bundle_meets(b, &p->box, p->stretch);
@@ -126,7 +124,10 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
         if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;
-        nearest_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
+        if (p->poses)
+            ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, index, 0, padded, false);
+        else
+            nearest_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
     }
     if (tracer->placed_count > 0 || tracer->crowd)
         ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer, kind);
@@ -139,7 +140,10 @@ void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
         if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;
-        any_loops[p->kind](rays, rays->from, p, index, 0, padded);
+        if (p->poses)
+            ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, index, 0, padded, true);
+        else
+            any_loops[p->kind](rays, rays->from, p, index, 0, padded);
     }
     if (tracer->placed_count > 0 || tracer->crowd)
         ZT_KERNEL_NAME(zt_search_any)(rays, bundle, tracer);

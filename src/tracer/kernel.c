@@ -21,6 +21,8 @@ typedef zt_status prepare(zt_tracer **tracer, zt_extent **extents, int32_t *exte
 prepare zt_prepare_single, zt_prepare_double;
 typedef zt_status prepare_search(zt_tracer *tracer, zt_meshes *meshes, zt_arena *arena);
 prepare_search zt_prepare_search_single, zt_prepare_search_double;
+typedef void prepare_ready(zt_ready *ready, const zt_tracer *tracer);
+prepare_ready zt_prepare_ready_single, zt_prepare_ready_double;
 
 static const zt_kernel *select_kernel(zt_precision precision) {
     const char *wanted = getenv("ZOETROPE_ISA");
@@ -57,7 +59,7 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
     if (!single) ZT_TRY(zt_prepare_double(&tracer, &extents, &count, exposure, meshes, arena));
     ZT_TRY(single ? zt_prepare_search_single(tracer, meshes, arena)
                   : zt_prepare_search_double(tracer, meshes, arena));
-    ready->tracer = tracer;
+    single ? zt_prepare_ready_single(ready, tracer) : zt_prepare_ready_double(ready, tracer);
     ready->kernel = select_kernel(ready->precision);
     return ZT_OK;
 }

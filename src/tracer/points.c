@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+#include "tracer/motion_points.h"
+#include "tracer/points_solids.h"
+
 /* How far off a surface rays begin that go on from it, against the roundings of surfaces that
  * lie on it, as a thing lies on a floor: a few roundings of a position on each side. Its own
  * surface is left out exactly (zt_origins.source), but for a mesh's: there, the numbers in the
@@ -80,19 +83,18 @@ static void find_surfaces(zt_points *restrict w, zt_origins *restrict from,
         WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, false);
 }
 
-/* Lists the points that lie on primitives of a kind. */
+/* Lists the points that lie on primitives of a kind that stand still. */
 static int list_kind(int32_t *restrict list, const zt_points *restrict w,
                      const zt_tracer *tracer, zt_primitive_kind kind) {
     int count = 0;
     for (int k = 0; k < w->count; k++) {
         list[count] = k;
-        count += tracer->primitives[w->primitive[k]].kind == kind;
+        const zt_primitive *p = &tracer->primitives[w->primitive[k]];
+        count += (p->kind == kind) & !p->poses;
     }
     return count;
 }
 
-/* The same for a solid: with its own space's distance f and normal n there, the gradient of the
- * distance is g = M^T n, and one step of Newton's, f / |g|^2 g, leads onto the surface. */
 #define DEFINE_SOLID(kind)                                                                     \
     static void kind##_surfaces(zt_points *restrict w, zt_origins *restrict from,              \
                                 const zt_tracer *tracer, const int32_t *restrict list,         \
@@ -100,26 +102,8 @@ static int list_kind(int32_t *restrict list, const zt_points *restrict w,
         WIDE_LOOP for (int j = 0; j < count; j++) {                                            \
             int32_t k = list[j];                                                               \
             const zt_primitive *p = &tracer->primitives[w->primitive[k]];                      \
-            real3 rx = p->solid.rows[0], ry = p->solid.rows[1], rz = p->solid.rows[2];         \
-            real gx = from->x[k] - p->solid.center.x, gy = from->y[k] - p->solid.center.y,     \
-                 gz = from->z[k] - p->solid.center.z;                                          \
-            zt_face f = zt_##kind##_surface(real_dot(rx.x, rx.y, rx.z, gx, gy, gz),            \
-                                            real_dot(ry.x, ry.y, ry.z, gx, gy, gz),            \
-                                            real_dot(rz.x, rz.y, rz.z, gx, gy, gz),            \
-                                            p->solid.a, p->solid.b);                           \
-            real nx = rx.x * f.nx + ry.x * f.ny + rz.x * f.nz;                                 \
-            real ny = rx.y * f.nx + ry.y * f.ny + rz.y * f.nz;                                 \
-            real nz = rx.z * f.nx + ry.z * f.ny + rz.z * f.nz;                                 \
-            real unit = 1 / real_sqrt(real_dot(nx, ny, nz, nx, ny, nz)), step = f.off * unit;  \
-            nx *= unit;                                                                        \
-            ny *= unit;                                                                        \
-            nz *= unit;                                                                        \
-            from->x[k] -= step * nx;                                                           \
-            from->y[k] -= step * ny;                                                           \
-            from->z[k] -= step * nz;                                                           \
-            w->nx[k] = nx;                                                                     \
-            w->ny[k] = ny;                                                                     \
-            w->nz[k] = nz;                                                                     \
+            zt_find_##kind(w, from, k, p->solid.rows[0], p->solid.rows[1], p->solid.rows[2],   \
+                           p->solid.center, p->solid.a, p->solid.b);                           \
         }                                                                                      \
     }
 DEFINE_SOLID(ball)
@@ -374,6 +358,8 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     w->count = rays->count;
     go_to_ends(w, rays, from);
     find_surfaces(w, from, tracer);
+    if (tracer->changes) ZT_KERNEL_NAME(zt_change_colors)(w, from, tracer);
+    if (tracer->moves) ZT_KERNEL_NAME(zt_find_moving)(w, from, tracer);
     int mesh_count = 0;
     if (tracer->has_solids)
         for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
@@ -381,6 +367,7 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
     find_meshes(w, rays, tracer, list, mesh_count);
     if (tracer->has_patterns) weave(w, from, tracer);
+    if (tracer->changes) ZT_KERNEL_NAME(zt_change_patterns)(w, from, tracer);
     face_rays(w, rays, from);
     leave_surfaces(w, from);
     for (int j = 0; j < mesh_count; j++) smooth_mesh(w, rays, tracer, list[j]);

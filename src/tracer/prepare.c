@@ -6,22 +6,13 @@
 #include <math.h>
 
 #include "base/diag.h"
-#include "tracer/shapes.h"
+#include "tracer/motion.h"
 
 /* More bounded things than this are asked through a hierarchy. */
 enum { SINGLE_MAX = 32 };
 
 static void make_pattern(zt_weave *weave, const zt_material *material, const zt_making *m) {
-    xform place = *m->world;
-    const zt_object *o = m->object;
-    if (o->shape == ZT_SHAPE_MESH) {
-        xform own =
-            xform_place(o->placement.position, o->placement.rotation, o->placement.scale);
-        place = xform_mul(m->world, &own);
-    } else if (o->shape == ZT_SHAPE_BOX) {
-        xform own = xform_place(o->box.center, o->box.rotation, (vec3){1, 1, 1});
-        place = xform_mul(m->world, &own);
-    }
+    xform place = ZT_REAL_NAME(zt_pattern_place)(m->object, m->world);
     xform back = xform_inverse(&place);
     bool stripes = material->pattern == ZT_PATTERN_STRIPES;
     vec3 across = vec3_normalize(material->pattern_direction);
@@ -50,16 +41,17 @@ typedef struct made {
     zt_extent *extents; /* of primitives, too */
     zt_placed_mesh *placed;
     zt_weave *weaves;
+    zt_change *changes; /* of primitives, too; NULL where nothing moves */
     int32_t count, placed_count, weave_count;
 } made;
 
-static void find_distances(zt_making *m, const zt_scene *scene) {
+static void find_distances(zt_making *m, const zt_scene *scene, vec3 origin) {
     zt_extent *e = m->extent;
     e->near = ZT_REAL_NAME(zt_shape_distance)(m, (vec3){0, 0, 0});
     e->lamp = INFINITY;
     for (int32_t i = 0; i < scene->light_count; i++) {
         if (scene->lights[i].kind == ZT_LIGHT_AMBIENT) continue;
-        vec3 lamp = vec3_sub(scene->lights[i].position, scene->camera.position);
+        vec3 lamp = vec3_sub(scene->lights[i].position, origin);
         double distance =
             fmax(ZT_REAL_NAME(zt_shape_distance)(m, lamp), zt_light_reach(&scene->lights[i]));
         if (!(distance < e->lamp)) continue;
@@ -68,33 +60,95 @@ static void find_distances(zt_making *m, const zt_scene *scene) {
     }
 }
 
-static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_scene *scene,
-                                 const xform *worlds, zt_meshes *meshes) {
+/* Makes an object into what it is at one moment; false where there is nothing to hit. */
+static bool make_at(zt_making *m, zt_placed_mesh *placed, const zt_course *c, int32_t i,
+                    int32_t moment) {
+    const zt_scene *scene = &c->exposure->moments[moment];
+    m->object = &scene->objects[i];
+    m->world = &zt_course_worlds(c, moment)[i];
+    *m->primitive = (zt_primitive){.object = i, .stretch = 1};
+    *m->surface = (zt_surface){.pattern = -1};
+    *m->extent = (zt_extent){.object = i, .least = INFINITY, .stretch = 1};
+    bool mesh = m->object->shape == ZT_SHAPE_MESH;
+    if (mesh ? !ZT_REAL_NAME(zt_prepare_mesh)(m, placed, &scene->meshes[m->object->mesh])
+             : !ZT_REAL_NAME(zt_prepare_shape)(m))
+        return false;
+    find_distances(m, scene, c->exposure->moments->camera.position);
+    return true;
+}
+
+static void add_extent(zt_extent *all, const zt_extent *e) {
+    all->size = fmax(all->size, e->size);
+    all->least = fmin(all->least, e->least);
+    all->near = fmin(all->near, e->near);
+    all->stretch = fmax(all->stretch, e->stretch);
+    if (!(e->lamp < all->lamp)) return;
+    all->lamp = e->lamp;
+    all->lamp_light = e->lamp_light;
+}
+
+/* An object that moves: as it is at the first moment at which there is anything, and its way.
+ */
+static zt_status make_moving(bool *there, zt_making *m, zt_placed_mesh *placed,
+                             const zt_course *c, int32_t i) {
+    zt_primitive primitive;
+    zt_surface surface;
+    zt_extent extent;
+    zt_placed_mesh other;
+    zt_making later = {.primitive = &primitive, .surface = &surface, .extent = &extent};
+    *there = false;
+    for (int32_t k = 0; k < c->exposure->moment_count; k++) {
+        if (!*there)
+            *there = make_at(m, placed, c, i, k);
+        else if (make_at(&later, &other, c, i, k))
+            add_extent(m->extent, &extent);
+    }
+    if (!*there) return ZT_OK;
+    zt_extent all = *m->extent;
+    if (m->primitive->kind == ZT_PRIMITIVE_MESH) return ZT_OK;
+    ZT_TRY(ZT_REAL_NAME(zt_prepare_motion)(there, m, c));
+    add_extent(m->extent, &all);
+    m->primitive->stretch = (real)m->extent->stretch;
+    return ZT_OK;
+}
+
+/* How what was made looks. */
+static zt_status prepare_looks(made *all, const zt_making *m, const zt_course *c, int32_t i) {
+    const zt_material *material = &c->exposure->moments->materials[m->object->material];
+    m->surface->color = to_real3(material->color);
+    m->surface->reflectivity = (real)material->reflectivity;
+    if (all->changes) {
+        zt_change *change = &all->changes[all->count];
+        ZT_TRY(ZT_REAL_NAME(zt_prepare_looks)(change, m->object, i, c));
+        if (change->looks) return ZT_OK;
+    }
+    if (material->pattern == ZT_PATTERN_NONE) return ZT_OK;
+    m->surface->pattern = all->weave_count;
+    make_pattern(&all->weaves[all->weave_count++], material, m);
+    return ZT_OK;
+}
+
+static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_course *c,
+                                 zt_meshes *meshes) {
+    const zt_scene *scene = c->exposure->moments;
     for (int32_t i = 0; i < scene->object_count; i++) {
-        const zt_object *object = &scene->objects[i];
-        if (object->shape == ZT_SHAPE_GROUP) continue;
-        zt_making m = {&all->primitives[all->count], &all->surfaces[all->count],
-                       &all->extents[all->count], object, &worlds[i]};
-        *m.primitive = (zt_primitive){.object = i, .stretch = 1};
-        *m.surface = (zt_surface){.pattern = -1};
-        *m.extent = (zt_extent){.object = i, .least = INFINITY, .stretch = 1};
-        if (object->shape == ZT_SHAPE_MESH) {
-            zt_placed_mesh *placed = &all->placed[all->placed_count];
-            if (!ZT_REAL_NAME(zt_prepare_mesh)(&m, placed, &scene->meshes[object->mesh]))
-                continue;
+        if (scene->objects[i].shape == ZT_SHAPE_GROUP) continue;
+        zt_placed_mesh *placed = &all->placed[all->placed_count];
+        zt_making m = {.primitive = &all->primitives[all->count],
+                       .surface = &all->surfaces[all->count],
+                       .extent = &all->extents[all->count]};
+        bool there;
+        if (c->moves[i])
+            ZT_TRY(make_moving(&there, &m, placed, c, i));
+        else
+            there = make_at(&m, placed, c, i, 0);
+        if (!there) continue;
+        if (m.primitive->kind == ZT_PRIMITIVE_MESH) {
             m.primitive->placed = all->placed_count++;
-            ZT_TRY(zt_meshes_build(&placed->built, meshes, object->mesh));
-        } else if (!ZT_REAL_NAME(zt_prepare_shape)(&m)) {
-            continue;
+            ZT_TRY(zt_meshes_build(&placed->built, meshes, m.object->mesh));
         }
-        find_distances(&m, scene);
-        const zt_material *material = &scene->materials[object->material];
-        m.surface->color = to_real3(material->color);
-        m.surface->reflectivity = (real)material->reflectivity;
-        if (material->pattern != ZT_PATTERN_NONE) {
-            m.surface->pattern = all->weave_count;
-            make_pattern(&all->weaves[all->weave_count++], material, &m);
-        }
+        ZT_TRY(prepare_looks(all, &m, c, i));
+        tracer->moves |= m.primitive->poses || (all->changes && all->changes[all->count].looks);
         tracer->has_solids |= zt_kind_is_solid(m.primitive->kind);
         all->count++;
     }
@@ -105,6 +159,7 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_scene *s
     tracer->placed_count = all->placed_count;
     tracer->weaves = all->weaves;
     tracer->has_patterns = all->weave_count > 0;
+    tracer->changes = all->changes;
     return ZT_OK;
 }
 
@@ -176,6 +231,12 @@ static size_t count_patterns(const zt_scene *scene) {
     return count;
 }
 
+static bool lights_move(const zt_tracer *tracer) {
+    bool moves = tracer->ambients != NULL;
+    for (int32_t i = 0; i < tracer->lamp_count; i++) moves |= tracer->lamps[i].moves;
+    return moves;
+}
+
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t *extent_count,
                                    const zt_exposure *exposure, zt_meshes *meshes,
                                    zt_arena *arena) {
@@ -187,17 +248,31 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
                 .extents = ZT_PUSH(arena, zt_extent, count),
                 .placed = ZT_PUSH(arena, zt_placed_mesh, count_meshes(scene)),
                 .weaves = ZT_PUSH(arena, zt_weave, count_patterns(scene))};
-    xform *worlds = ZT_PUSH(arena, xform, count);
     if (!tracer || !all.primitives || !all.surfaces || !all.extents || !all.placed ||
-        !all.weaves || !worlds)
+        !all.weaves)
         return ZT_EMEMORY;
-    *tracer = (zt_tracer){.reflection_depth = scene->reflection_depth};
-    zt_scene_worlds(worlds, scene, scene->camera.position);
+    if (exposure->moment_count > 1) {
+        all.changes = ZT_PUSH(arena, zt_change, count);
+        if (!all.changes) return ZT_EMEMORY;
+    }
+    zt_course course;
+    ZT_TRY(ZT_REAL_NAME(zt_course_make)(&course, exposure, arena));
+    *tracer = (zt_tracer){.reflection_depth = scene->reflection_depth,
+                          .exposure = exposure,
+                          .straight = exposure->moment_count == 2};
     ZT_TRY(ZT_REAL_NAME(zt_prepare_lamps)(tracer, exposure, arena));
-    ZT_TRY(prepare_objects(&all, tracer, scene, worlds, meshes));
+    ZT_TRY(prepare_objects(&all, tracer, &course, meshes));
+    tracer->moves |= lights_move(tracer);
+    if (tracer->moves) ZT_TRY(zt_exposure_index(&tracer->moment_at, exposure, arena));
     if (zt_accuracy_twins(all.extents, all.count, (double)TIE)) tracer->tie = TIE;
     *out = tracer;
     *extents = all.extents;
     *extent_count = all.count;
     return ZT_OK;
+}
+
+void ZT_REAL_NAME(zt_prepare_ready)(zt_ready *ready, const zt_tracer *tracer) {
+    ready->tracer = tracer;
+    ready->moves = tracer->moves;
+    for (int32_t i = 0; i < tracer->lamp_count; i++) ready->random |= tracer->lamps[i].has_size;
 }

@@ -10,6 +10,9 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
                                    int32_t *extent_count, const zt_exposure *exposure,
                                    zt_meshes *meshes, zt_arena *arena);
 
+/* Tells what those who send rays must know of a tracer. */
+void ZT_REAL_NAME(zt_prepare_ready)(zt_ready *ready, const zt_tracer *tracer);
+
 /* Then what is asked by itself is told from what is asked through a hierarchy, which is built:
  * only once it is known that the tracer is wanted. */
 zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,

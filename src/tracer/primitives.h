@@ -54,6 +54,10 @@ typedef struct zt_primitive {
     int32_t object; /* its index in the scene */
     zt_box box;     /* around all but planes */
     real stretch;   /* how many times more roundings than a sphere's its arithmetic may have */
+    /* Of what moves, else NULL: where it is at which moment (tracer/motion.h). Then the box is
+     * around all of its way, and what follows says nothing. */
+    const real *poses;
+    real unit; /* of the poses of a solid: what their axes are given in, a power of two */
     union {
         struct {
             real3 normal; /* unit */
@@ -81,22 +85,26 @@ typedef struct zt_primitive {
  * that begins elsewhere, 1 for one that begins on this surface and goes on outside of it, -1
  * for one that goes on inside. */
 
+/* The normal has any length. */
+static inline real zt_plane_meet(real3 n, real distance, real ox, real oy, real oz, real dx,
+                                 real dy, real dz, int32_t leaving) {
+    real t =
+        (distance - real_dot(n.x, n.y, n.z, ox, oy, oz)) / real_dot(n.x, n.y, n.z, dx, dy, dz);
+    return ((t > 0) & (leaving == 0)) ? t : REAL_INFINITY;
+}
+
 static inline real zt_plane_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
                                      real dy, real dz, int32_t leaving) {
-    real3 n = p->plane.normal;
-    real t = (p->plane.distance - real_dot(n.x, n.y, n.z, ox, oy, oz)) /
-             real_dot(n.x, n.y, n.z, dx, dy, dz);
-    return ((t > 0) & (leaving == 0)) ? t : REAL_INFINITY;
+    return zt_plane_meet(p->plane.normal, p->plane.distance, ox, oy, oz, dx, dy, dz, leaving);
 }
 
 /* Roots of t^2 - 2 b t + c = 0 with the part across the ray, |f + b d|^2, in place of the
  * cancelling b^2 - c: Haines, Gunther and Akenine-Moller, "Precision improvements for
  * ray/sphere intersection", Ray Tracing Gems, 2019. The far one counts from inside. Of a ray
  * that leaves the sphere inwards one root is 0, and the other one, 2 b, is positive. */
-static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
-                                      real dy, real dz, int32_t leaving) {
-    real3 center = p->sphere.center;
-    real r2 = p->sphere.radius * p->sphere.radius;
+static inline real zt_sphere_meet(real3 center, real radius, real ox, real oy, real oz, real dx,
+                                  real dy, real dz, int32_t leaving) {
+    real r2 = radius * radius;
     real fx = ox - center.x, fy = oy - center.y, fz = oz - center.z;
     real b = -real_dot(fx, fy, fz, dx, dy, dz);
     real lx = fx + b * dx, ly = fy + b * dy, lz = fz + b * dz;
@@ -109,6 +117,11 @@ static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, r
     t = ((inside > 0) & (t > 0)) ? t : REAL_INFINITY;
     real through = real_max(2 * b, REAL_LEAST);
     return leaving == 0 ? t : leaving < 0 ? through : REAL_INFINITY;
+}
+
+static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
+                                      real dy, real dz, int32_t leaving) {
+    return zt_sphere_meet(p->sphere.center, p->sphere.radius, ox, oy, oz, dx, dy, dz, leaving);
 }
 
 /* The side of the origin that a directed edge a -> b has it on, twice the area they span: right

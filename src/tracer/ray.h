@@ -44,6 +44,12 @@ static inline int zt_batch_padded(int count) {
     return (count + ZT_BATCH_LANES - 1) / ZT_BATCH_LANES * ZT_BATCH_LANES;
 }
 
+/* 0, or how a ray with a source leaves the surface of primitive number `index`. */
+static inline int32_t zt_leaving(int32_t source, int32_t index) {
+    int32_t how = (source & 1) ? -1 : 1;
+    return (source >> 1) == index ? how : 0;
+}
+
 /* What roundings can tell apart, as a share of the largest number around. */
 #define TIE (16 * REAL_ROUNDING)
 

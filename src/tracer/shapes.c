@@ -15,17 +15,16 @@
 /* Triangles with a smaller sine of an angle are slivers. */
 #define SLIVER 0x1p-7
 
-/* The factor of a transform that scales alike in all directions, or 0 for another one. */
-static double similarity_scale(const xform *m) {
+double ZT_REAL_NAME(zt_similarity_scale)(const xform *m) {
     double xx = vec3_dot(m->x, m->x), yy = vec3_dot(m->y, m->y), zz = vec3_dot(m->z, m->z);
     double largest = fmax(xx, fmax(yy, zz)), off = SIMILARITY_TOLERANCE * largest;
     bool similar = largest - fmin(xx, fmin(yy, zz)) <= off &&
                    fabs(vec3_dot(m->x, m->y)) <= off && fabs(vec3_dot(m->y, m->z)) <= off &&
                    fabs(vec3_dot(m->z, m->x)) <= off;
-    return similar ? sqrt(xx) : 0;
+    return similar ? sqrt(xx) : -1;
 }
 
-static void set_bounds(zt_making *m, vec3 low, vec3 high) {
+void ZT_REAL_NAME(zt_set_bounds)(zt_making *m, vec3 low, vec3 high) {
     m->extent->low = low;
     m->extent->high = high;
     m->extent->size = fmax(vec3_max_abs(low), vec3_max_abs(high));
@@ -136,7 +135,8 @@ static bool prepare_triangle(zt_making *m) {
     m->primitive->kind = ZT_PRIMITIVE_TRIANGLE;
     m->surface->normal = to_real3(normal);
     m->surface->center = m->primitive->triangle.vertices[0];
-    set_bounds(m, vec3_min(v[0], vec3_min(v[1], v[2])), vec3_max(v[0], vec3_max(v[1], v[2])));
+    ZT_REAL_NAME(zt_set_bounds)
+    (m, vec3_min(v[0], vec3_min(v[1], v[2])), vec3_max(v[0], vec3_max(v[1], v[2])));
     zt_extent *e = m->extent;
     e->flat = true;
     e->normal = normal;
@@ -169,7 +169,7 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     m->primitive->kind = kind;
     m->surface->closed = kind != ZT_PRIMITIVE_DISK;
     m->primitive->solid.center = to_real3(place->shift);
-    set_bounds(m, vec3_sub(middle, reach), vec3_add(middle, reach));
+    ZT_REAL_NAME(zt_set_bounds)(m, vec3_sub(middle, reach), vec3_add(middle, reach));
     m->primitive->stretch = (real)(longest * longest_back);
     m->extent->stretch = longest * longest_back;
     m->extent->middle = middle;
@@ -195,9 +195,9 @@ static xform place_along(const xform *world, vec3 center, vec3 axis, double acro
 
 static bool prepare_sphere(zt_making *m) {
     const zt_sphere *sphere = &m->object->sphere;
-    double scale = similarity_scale(m->world);
+    double scale = ZT_REAL_NAME(zt_similarity_scale)(m->world);
     vec3 center = xform_point(m->world, sphere->center);
-    if (scale == 0) {
+    if (scale < 0) {
         xform place = {vec3_scale(m->world->x, sphere->radius),
                        vec3_scale(m->world->y, sphere->radius),
                        vec3_scale(m->world->z, sphere->radius), center};
@@ -210,7 +210,7 @@ static bool prepare_sphere(zt_making *m) {
     p->sphere.center = to_real3(center);
     p->sphere.radius = (real)radius;
     vec3 reach = {radius, radius, radius};
-    set_bounds(m, vec3_sub(center, reach), vec3_add(center, reach));
+    ZT_REAL_NAME(zt_set_bounds)(m, vec3_sub(center, reach), vec3_add(center, reach));
     m->surface->bend = (real)(1 / radius);
     m->surface->center = p->sphere.center;
     m->surface->level = p->sphere.radius;
@@ -378,7 +378,7 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     placed->vertex_colors = m->object->vertex_colors && mesh->colors;
     m->primitive->kind = ZT_PRIMITIVE_MESH;
     m->surface->closed = -1;
-    set_bounds(m, vec3_sub(middle, around), vec3_add(middle, around));
+    ZT_REAL_NAME(zt_set_bounds)(m, vec3_sub(middle, around), vec3_add(middle, around));
     m->extent->middle = middle;
     m->extent->ways[0] = vec3_scale(place.x, half.x);
     m->extent->ways[1] = vec3_scale(place.y, half.y);

@@ -30,6 +30,12 @@ bool ZT_REAL_NAME(zt_prepare_shape)(zt_making *making);
 bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *making, zt_placed_mesh *placed,
                                    const zt_mesh *mesh);
 
+/* The factor of a transform that scales alike in all directions, or -1 for another one. */
+double ZT_REAL_NAME(zt_similarity_scale)(const xform *m);
+
+/* Gives an extent and a primitive their bounds. */
+void ZT_REAL_NAME(zt_set_bounds)(zt_making *making, vec3 low, vec3 high);
+
 /* How far a point is from the surface of what was made, about: no more for a point outside of
  * its box, to first order within. */
 double ZT_REAL_NAME(zt_shape_distance)(const zt_making *making, vec3 point);

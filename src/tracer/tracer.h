@@ -75,6 +75,9 @@ static inline vec3 zt_placed_point(const zt_placed_mesh *m, vec3 p) {
                                   vec3_dot(m->rows[2], p)});
 }
 
+/* What of a primitive's looks changes (tracer/motion.h). */
+typedef struct zt_change zt_change;
+
 struct zt_tracer {
     const zt_primitive *primitives;
     const zt_surface *surfaces; /* one for each primitive */
@@ -98,6 +101,8 @@ struct zt_tracer {
     bool moves; /* then the next two are there */
     const zt_exposure *exposure;
     const uint16_t *moment_at; /* of zt_exposure_index() */
+    bool straight;             /* there are two moments only */
+    const zt_change *changes;  /* of each primitive: what of its looks changes; NULL: nothing */
 };
 
 #endif
