@@ -31,9 +31,12 @@ static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *sc
                                        zt_lens_pixel(&scene->camera, height), meshes, &arena),
                      ZT_OK);
     assert_int_equal(zt_lens_prepare(&lens, &exposure, width, height, &arena), ZT_OK);
+    zt_render_count count;
     zt_render_job job = {
         .scene = &ready, .lens = lens, .sampling = {.min = samples, .max = samples}};
-    assert_int_equal(zt_render(image, left_out, &job, work, pool), ZT_OK);
+    assert_int_equal(zt_render(image, &count, &job, work, pool), ZT_OK);
+    *left_out = count.left_out;
+    zt_render_work_close(work);
     zt_pool_close(&pool);
     zt_meshes_close(&meshes);
     zt_arena_free(&arena);

@@ -2,6 +2,7 @@
 #include <zoetrope/image.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 zt_status zt_image_create(zt_image **out, int width, int height) {
     *out = NULL;
@@ -24,7 +25,23 @@ zt_status zt_image_create(zt_image **out, int width, int height) {
 
 void zt_image_free(zt_image **image) {
     if (!*image) return;
+    for (int i = 0; i < (*image)->channel_count; i++) free((*image)->channels[i].values);
     free((*image)->pixels);
     free(*image);
     *image = NULL;
+}
+
+float *zt_image_channel(const zt_image *image, const char *name) {
+    for (int i = 0; i < image->channel_count; i++)
+        if (strcmp(image->channels[i].name, name) == 0) return image->channels[i].values;
+    return NULL;
+}
+
+zt_status zt_image_add_channel(zt_image *image, const char *name) {
+    if (zt_image_channel(image, name)) return ZT_OK;
+    if (image->channel_count == ZT_IMAGE_CHANNELS_MAX) return ZT_EARGUMENT;
+    float *values = calloc((size_t)image->width * (size_t)image->height, sizeof *values);
+    if (!values) return ZT_EMEMORY;
+    image->channels[image->channel_count++] = (zt_channel){name, values};
+    return ZT_OK;
 }

@@ -1,4 +1,4 @@
-/* Renders one frame: tiles on all threads, samples, and the film that takes their light. */
+/* Renders one frame: on all threads, samples where they are asked for, and what they become. */
 #ifndef ZT_RENDER_RENDER_H
 #define ZT_RENDER_RENDER_H
 
@@ -10,17 +10,21 @@
 
 #include "base/arena.h"
 #include "base/pool.h"
+#include "render/filter.h"
 #include "render/lens.h"
 #include "tracer/kernel.h"
 
-/* What each thread works with; made once in a run. */
+/* What each thread works with, and the film; made once in a run. Its threads' memory is the
+ * arena's; closing gives back the film, which only some samplings ask for. */
 typedef struct zt_render_work zt_render_work;
 zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread_count);
+void zt_render_work_close(zt_render_work *work); /* may be NULL */
 
 typedef struct zt_render_job {
     const zt_ready *scene;
     const zt_lens *lens;
     zt_sampling sampling;
+    const zt_warp *warp; /* the sampling's filter made ready */
     /* What random numbers are keyed by: where in their pixels samples are taken, and all else.
      */
     uint64_t place_key, frame_key;
@@ -28,10 +32,16 @@ typedef struct zt_render_job {
     void *user;
 } zt_render_job;
 
-/* Renders into all of `image`. The same bits for any number of threads. A sample that is not
- * finite is left out of its pixel; `*left_out_count` says how many were. ZT_ESTOPPED when asked
- * to stop: then the image is unfinished. */
-zt_status zt_render(zt_image *image, int64_t *left_out_count, const zt_render_job *job,
+typedef struct zt_render_count {
+    int64_t left_out; /* samples that were not finite */
+    int64_t samples;
+    zt_ray_counts rays;
+} zt_render_count;
+
+/* Renders into all of `image`, and into its further channels. The same bits for any number of
+ * threads. A sample that is not finite is left out of its pixel. ZT_ESTOPPED when asked to
+ * stop: then the image is unfinished. ZT_EMEMORY. */
+zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job *job,
                     zt_render_work *work, zt_pool *pool);
 
 #endif

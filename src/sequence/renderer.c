@@ -60,6 +60,7 @@ void zt_renderer_close(zt_renderer **slot) {
     if (!r) return;
     zt_pool_close(&r->pool);
     zt_meshes_close(&r->meshes);
+    zt_render_work_close(r->work);
     zt_arena_free(&r->run);
     zt_arena_free(&r->frame);
     zt_pacing_free(&r->pacing);
@@ -82,6 +83,7 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     ZT_TRY(
         zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height, &r->frame));
     t->job = (zt_render_job){.scene = &t->ready, .lens = t->lens, .sampling = r->sampling};
+    ZT_TRY(zt_warp_prepare(&t->job.warp, &r->sampling, &r->frame));
     zt_shutter_keys(&t->job.place_key, &t->job.frame_key, &t->exposure, &r->sampling);
     r->cost =
         (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
@@ -100,19 +102,19 @@ zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
     zt_taking t;
-    int64_t left_out_count;
+    zt_render_count count;
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_doubt(r, &t.ready, &t.exposure, &t.division, frame);
     t.job.stopped = watcher ? watcher->stopped : NULL;
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();
-    ZT_TRY(zt_render(image, &left_out_count, &t.job, r->work, r->pool));
+    ZT_TRY(zt_render(image, &count, &t.job, r->work, r->pool));
     r->cost.render_s = zt_clock_s() - begun_s;
-    r->cost.left_out_count = left_out_count;
-    if (left_out_count > 0)
+    r->cost.left_out_count = count.left_out;
+    if (count.left_out > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",
-                frame, left_out_count);
+                frame, count.left_out);
     return ZT_OK;
 }
 

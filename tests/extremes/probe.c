@@ -77,15 +77,15 @@ static int64_t render(zt_image *image, const zt_scene *scene, const probe_tracer
                       zt_pool *pool, int threads) {
     zt_arena arena = {0};
     zt_render_work *work;
-    int64_t left_out = -1;
+    zt_render_count count;
     zt_exposure exposure = zt_exposure_of(scene);
     zt_lens *lens;
     zt_render_job job = {.scene = &t->ready, .sampling = {.min = 1, .max = 1}};
     bool ok = zt_lens_prepare(&lens, &exposure, image->width, image->height, &arena) == ZT_OK &&
               (job.lens = lens) && zt_render_work_push(&work, &arena, threads) == ZT_OK &&
-              zt_render(image, &left_out, &job, work, pool) == ZT_OK;
+              zt_render(image, &count, &job, work, pool) == ZT_OK;
     zt_arena_free(&arena);
-    return ok ? left_out : -1;
+    return ok ? count.left_out : -1;
 }
 
 int64_t probe_render(float *pixels, const zt_scene *scene, probe_precision precision, int width,

@@ -1,0 +1,79 @@
+/* The film: what the samples of pixels add up to where not all take as many, and how far off
+ * these still are. */
+#ifndef ZT_RENDER_FILM_H
+#define ZT_RENDER_FILM_H
+
+#include <stdalign.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/status.h>
+
+#include "tracer/kernel.h"
+
+/* Light that samples add up to, and how many they are. In double precision, in which any number
+ * of equal samples adds up to exactly so many times one of them. */
+typedef struct zt_film_sum {
+    double r, g, b;
+    int32_t taken;
+} zt_film_sum;
+
+/* A pixel that takes samples. */
+typedef struct zt_slot {
+    zt_film_sum sum; /* of the samples that count positively */
+    int32_t column, row;
+    int32_t asked; /* how many samples were taken, those that are left out too */
+    bool strange;  /* a sample saw what none of the pixels around sees in its middle */
+} zt_slot;
+
+/* Planes are of a number for each pixel; `slots` and lists have room for all pixels. */
+typedef struct zt_film {
+    int width, height;
+    zt_slot *slots;
+    zt_film_sum *negative;    /* for each slot, of samples that count negatively; or NULL */
+    int32_t *waiting, *round; /* slots that take further samples; those that do so now */
+    bool *goes_on;            /* for each slot of the round */
+    float *error; /* plane: the estimated squared error; negative where there is none */
+    /* Where edges were looked for: planes of what a ray through the pixel's middle saw; and of
+     * the number of samples, as its logarithm, that a pixel takes at least, 0 for that one. */
+    uint32_t *path;
+    uint8_t *least, *spread;
+    int32_t slot_count, waiting_count, round_count;
+} zt_film;
+
+/* What a thread adds up for the slots that it works on: of the samples so far or the first half
+ * of them, and of those that are new; and likewise of those that count negatively. */
+typedef struct zt_film_sums {
+    struct zt_film_half {
+        alignas(64) double r[ZT_BATCH];
+        alignas(64) double g[ZT_BATCH];
+        alignas(64) double b[ZT_BATCH];
+        alignas(64) int32_t taken[ZT_BATCH];
+    } positive[2], negative[2];
+} zt_film_sums;
+
+/* Makes an empty film for pictures of a size; what there is of that size is used again. A film
+ * of zeros is closed. ZT_EMEMORY. */
+zt_status zt_film_open(zt_film *film, int width, int height, bool is_signed);
+void zt_film_close(zt_film *film);
+
+static inline size_t zt_film_pixel(const zt_film *film, int32_t column, int32_t row) {
+    return (size_t)row * (size_t)film->width + (size_t)column;
+}
+
+/* A pixel gets a slot, and waits; nothing happens where it has one. */
+void zt_film_add(zt_film *film, int32_t column, int32_t row);
+
+/* The mean of some samples, of which those of `negative` (may be NULL) count negatively; black
+ * without any. Where what is left of the count is so little that noise would explode, all count
+ * alike. */
+void zt_film_mean(double mean[3], const zt_film_sum *positive, const zt_film_sum *negative);
+
+/* The squared standard error of the mean of two means, of independent samples. */
+float zt_film_estimate(const double a[3], int32_t a_count, const double b[3], int32_t b_count);
+
+/* The squared error of a pixel, averaged with its neighbours as far as there are estimates, so
+ * that two halves that agree by luck do not count for much. Negative where there is none. */
+float zt_film_error(const zt_film *film, int32_t column, int32_t row);
+
+#endif

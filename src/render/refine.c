@@ -1,0 +1,300 @@
+/* In the first round each pixel takes as many samples as are asked for at least; in each round
+ * that follows, as many again as it has. What is new in a round and what was there before are
+ * independent halves, well spread each: by how much they differ says how far their mean may be
+ * off. The pixels with the fewest samples come first, so that those which join late catch up.
+ */
+#include "render/refine.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tracer/isa.h"
+
+/* Of pixels that are refined, so many samples at least; rays that a thread takes at a time. */
+enum { EDGE_SAMPLES = 4, PAIR = 2, TOGETHER = 16, TASK_RAYS = 8192 };
+
+/* What all slots of a round have in common. */
+typedef struct round_job {
+    zt_frame *frame;
+    int32_t asked, more; /* samples so far, and now */
+    int32_t group;       /* slots that share a batch */
+    int32_t task_slots;  /* slots of a task */
+    float wanted;        /* the squared error below which a pixel is left */
+    bool is_signed;
+} round_job;
+
+/* Samples ---------------------------------------------------------------------------------- */
+
+/* Adds a sample of each pixel, from `first` in the batch on, to the sums. */
+ZT_CLONES static int add_samples(struct zt_film_half *restrict sum,
+                                 const zt_radiance *restrict light, int first, int count) {
+    int left_out = 0;
+    for (int i = 0; i < count; i++) {
+        float r = light->r[first + i], g = light->g[first + i], b = light->b[first + i];
+        bool finite = zt_finite3(r, g, b);
+        sum->r[i] += finite ? (double)r : 0;
+        sum->g[i] += finite ? (double)g : 0;
+        sum->b[i] += finite ? (double)b : 0;
+        sum->taken[i] += finite;
+        left_out += !finite;
+    }
+    return left_out;
+}
+
+/* Moves the samples that count negatively out of a batch's light to the sums of those: what is
+ * left there adds nothing, being no number. */
+static int take_negative(struct zt_film_half *sum, zt_radiance *light, const float *weight,
+                         int first, int count) {
+    int moved = 0;
+    for (int i = 0; i < count; i++) {
+        float r = light->r[first + i], g = light->g[first + i], b = light->b[first + i];
+        if (weight[first + i] > 0 || !zt_finite3(r, g, b)) continue;
+        sum->r[i] += (double)r;
+        sum->g[i] += (double)g;
+        sum->b[i] += (double)b;
+        sum->taken[i]++;
+        light->r[first + i] = NAN;
+        moved++;
+    }
+    return moved;
+}
+
+/* Whether one of the pixels around sees the same in its middle. */
+static bool is_known(const zt_film *film, const zt_slot *slot, uint32_t path) {
+    for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++) {
+            int x = slot->column + dx, y = slot->row + dy;
+            if (x < 0 || y < 0 || x >= film->width || y >= film->height) continue;
+            if (film->path[zt_film_pixel(film, x, y)] == path) return true;
+        }
+    return false;
+}
+
+/* A straight edge through a pixel has the middles of its neighbours on both sides: where a
+ * sample sees what they do not, something is thin, and may go on beside the pixel. */
+static void look_for_strange(zt_film *film, const int32_t *slots, const uint32_t *path, int now,
+                             int count) {
+    for (int i = 0; i < count; i++) {
+        zt_slot *slot = &film->slots[slots[i]];
+        uint32_t known = film->path[zt_film_pixel(film, slot->column, slot->row)];
+        for (int k = 0; k < now && !slot->strange; k++) {
+            uint32_t seen = path[k * count + i];
+            if (seen == known) continue;
+            slot->strange = !is_known(film, slot, seen);
+            known = seen;
+        }
+    }
+}
+
+/* Samples number asked + done and on, `now` of each of the listed slots. */
+static void take_samples(const round_job *j, zt_render_thread *own, const int32_t *slots,
+                         int count, int done, int now) {
+    zt_frame *f = j->frame;
+    int first_half = j->asked ? 0 : j->more / 2;
+    for (int k = 0; k < now; k++)
+        zt_samples_take(&own->places, &own->rays, f->job, own->column, own->row, k * count,
+                        count, j->asked + done + k);
+    zt_frame_trace(f, own, now * count);
+    if (f->is_first) look_for_strange(&f->work->film, slots, own->light.path, now, count);
+    for (int k = 0; k < now; k++) {
+        int half = done + k >= first_half;
+        if (j->is_signed)
+            own->count.left_out -= take_negative(&own->sums.negative[half], &own->light,
+                                                 own->places.weight, k * count, count);
+        own->count.left_out +=
+            add_samples(&own->sums.positive[half], &own->light, k * count, count);
+    }
+}
+
+static zt_film_sum sum_at(const struct zt_film_half *half, int i) {
+    return (zt_film_sum){half->r[i], half->g[i], half->b[i], half->taken[i]};
+}
+
+static zt_film_sum both(zt_film_sum a, zt_film_sum b) {
+    return (zt_film_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.taken + b.taken};
+}
+
+/* What a slot has taken in the round becomes its own, and says how far off it is. */
+static void finish_slot(zt_film *film, int32_t index, const round_job *j,
+                        const zt_film_sums *sums, int i) {
+    zt_slot *slot = &film->slots[index];
+    zt_film_sum none = {0}, *negative = j->is_signed ? &film->negative[index] : NULL;
+    zt_film_sum before = both(slot->sum, sum_at(&sums->positive[0], i));
+    zt_film_sum fresh = sum_at(&sums->positive[1], i), before_negative = none,
+                fresh_negative = none;
+    if (negative) {
+        before_negative = both(*negative, sum_at(&sums->negative[0], i));
+        fresh_negative = sum_at(&sums->negative[1], i);
+        *negative = both(before_negative, fresh_negative);
+    }
+    double a[3], b[3];
+    zt_film_mean(a, &before, &before_negative);
+    zt_film_mean(b, &fresh, &fresh_negative);
+    film->error[zt_film_pixel(film, slot->column, slot->row)] = zt_film_estimate(
+        a, before.taken + before_negative.taken, b, fresh.taken + fresh_negative.taken);
+    slot->sum = both(before, fresh);
+    slot->asked += j->more;
+}
+
+/* The samples of a round for slots that share batches. */
+static void sample_group(const round_job *j, zt_render_thread *own, const int32_t *slots,
+                         int count) {
+    zt_film *film = &j->frame->work->film;
+    for (int i = 0; i < count; i++) {
+        own->column[i] = film->slots[slots[i]].column;
+        own->row[i] = film->slots[slots[i]].row;
+    }
+    zt_samples_key(&own->places, j->frame->job, own->column, own->row, count);
+    memset(own->sums.positive, 0, sizeof own->sums.positive);
+    if (j->is_signed) memset(own->sums.negative, 0, sizeof own->sums.negative);
+    own->rays.wants_path = j->frame->is_first;
+    int together = ZT_BATCH / count;
+    for (int done = 0; done < j->more; done += together) {
+        if (zt_frame_stopped(j->frame)) return;
+        take_samples(j, own, slots, count, done, min_int(together, j->more - done));
+    }
+    for (int i = 0; i < count; i++) finish_slot(film, slots[i], j, &own->sums, i);
+}
+
+static void sample_task(void *user, int task, int worker) {
+    const round_job *j = user;
+    const zt_film *film = &j->frame->work->film;
+    zt_render_thread *own = &j->frame->work->threads[worker];
+    int32_t end = min_int((task + 1) * j->task_slots, film->round_count);
+    for (int32_t i = task * j->task_slots; i < end; i += j->group) {
+        if (zt_frame_stopped(j->frame)) return;
+        sample_group(j, own, film->round + i, min_int(j->group, end - i));
+    }
+}
+
+/* Rounds ----------------------------------------------------------------------------------- */
+
+enum { DECISIONS = 4096 }; /* of a task */
+
+static void decide_task(void *user, int task, int worker) {
+    (void)worker;
+    const round_job *j = user;
+    const zt_frame *f = j->frame;
+    zt_film *film = &f->work->film;
+    int32_t end = min_int((task + 1) * DECISIONS, film->round_count);
+    for (int32_t i = task * DECISIONS; i < end; i++) {
+        const zt_slot *s = &film->slots[film->round[i]];
+        int least = f->is_first ? 1 << film->least[zt_film_pixel(film, s->column, s->row)] : 0;
+        film->goes_on[i] =
+            s->asked < f->job->sampling.max &&
+            (s->asked < least || zt_film_error(film, s->column, s->row) > j->wanted);
+    }
+}
+
+/* Of the slots that wait, those with the fewest samples. */
+static void begin_round(zt_film *film) {
+    int32_t fewest = INT32_MAX, kept = 0;
+    for (int32_t i = 0; i < film->waiting_count; i++)
+        fewest = min_int(fewest, film->slots[film->waiting[i]].asked);
+    film->round_count = 0;
+    for (int32_t i = 0; i < film->waiting_count; i++) {
+        int32_t slot = film->waiting[i];
+        bool now = film->slots[slot].asked == fewest;
+        film->round[film->round_count] = slot;
+        film->waiting[kept] = slot;
+        film->round_count += now;
+        kept += !now;
+    }
+    film->waiting_count = kept;
+}
+
+/* Those that go on wait again, and the neighbours of strange ones do. */
+static void end_round(zt_film *film) {
+    for (int32_t i = 0; i < film->round_count; i++) {
+        zt_slot *s = &film->slots[film->round[i]];
+        if (film->goes_on[i]) film->waiting[film->waiting_count++] = film->round[i];
+        if (!s->strange) continue;
+        s->strange = false;
+        for (int y = max_int(s->row - 1, 0); y <= min_int(s->row + 1, film->height - 1); y++)
+            for (int x = max_int(s->column - 1, 0);
+                 x <= min_int(s->column + 1, film->width - 1); x++)
+                zt_film_add(film, x, y);
+    }
+}
+
+static void run(zt_pool *pool, int count, void (*task)(void *, int, int), void *user) {
+    if (count == 1)
+        task(user, 0, 0);
+    else
+        zt_pool_run(pool, count, task, user);
+}
+
+static round_job plan_round(zt_frame *f) {
+    const zt_film *film = &f->work->film;
+    const zt_sampling *s = &f->job->sampling;
+    round_job j = {.frame = f,
+                   .asked = film->slots[film->round[0]].asked,
+                   .wanted = (float)(s->error * s->error),
+                   .is_signed = zt_warp_is_signed(f->job->warp)};
+    int first = max_int(s->min, s->edges ? EDGE_SAMPLES : PAIR);
+    j.more = min_int(j.asked ? j.asked : first, s->max - j.asked);
+    j.group = ZT_BATCH / min_int(j.more, TOGETHER);
+    j.task_slots = j.group * max_int(1, TASK_RAYS / (j.group * j.more));
+    return j;
+}
+
+/* The image ---------------------------------------------------------------------------------*/
+
+static void write_task(void *user, int task, int worker) {
+    (void)worker;
+    const round_job *j = user;
+    const zt_film *film = &j->frame->work->film;
+    int32_t end = min_int((task + 1) * DECISIONS, film->slot_count);
+    for (int32_t i = task * DECISIONS; i < end; i++) {
+        const zt_slot *s = &film->slots[i];
+        double mean[3];
+        zt_film_mean(mean, &s->sum, j->is_signed ? &film->negative[i] : NULL);
+        float *to = j->frame->image->pixels + 4 * zt_film_pixel(film, s->column, s->row);
+        for (int k = 0; k < 3; k++) to[k] = (float)mean[k];
+        to[3] = 1;
+    }
+}
+
+static void write_channels(const zt_film *film, zt_image *image) {
+    float *samples = zt_image_channel(image, "samples"),
+          *error = zt_image_channel(image, "error");
+    size_t count = (size_t)film->width * (size_t)film->height;
+    for (size_t i = 0; samples && i < count; i++) samples[i] = 1;
+    for (size_t i = 0; error && i < count; i++) error[i] = -1;
+    for (int32_t i = 0; (samples || error) && i < film->slot_count; i++) {
+        const zt_slot *s = &film->slots[i];
+        size_t pixel = zt_film_pixel(film, s->column, s->row);
+        float estimate = zt_film_error(film, s->column, s->row);
+        if (samples) samples[pixel] = (float)s->asked;
+        if (error) error[pixel] = estimate < 0 ? -1 : sqrtf(estimate);
+    }
+}
+
+static int task_count(int32_t count, int32_t each) { return (count + each - 1) / each; }
+
+zt_status zt_refine(zt_frame *f) {
+    zt_film *film = &f->work->film;
+    round_job j = {.frame = f, .is_signed = zt_warp_is_signed(f->job->warp)};
+    while (film->waiting_count > 0) {
+        begin_round(film);
+        j = plan_round(f);
+        run(f->pool, task_count(film->round_count, j.task_slots), sample_task, &j);
+        if (f->stopped) return ZT_ESTOPPED;
+        run(f->pool, task_count(film->round_count, DECISIONS), decide_task, &j);
+        end_round(film);
+    }
+    run(f->pool, task_count(film->slot_count, DECISIONS), write_task, &j);
+    write_channels(film, f->image);
+    return ZT_OK;
+}
+
+void zt_refine_begin(zt_frame *f) {
+    zt_film *film = &f->work->film;
+    for (int tile = 0; tile < f->tile_count; tile++) {
+        int x = tile % f->tile_columns * TILE_SIDE, y = tile / f->tile_columns * TILE_SIDE;
+        for (int i = 0; i < ZT_BATCH; i++) {
+            int column = x + f->work->column[i], row = y + f->work->row[i];
+            if (column < film->width && row < film->height) zt_film_add(film, column, row);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+/* Further samples for the pixels of a film, in rounds over the whole picture, until each is as
+ * good as it was asked for. */
+#ifndef ZT_RENDER_REFINE_H
+#define ZT_RENDER_REFINE_H
+
+#include "render/work.h"
+
+/* All pixels of the picture wait, those next to each other one after the other. */
+void zt_refine_begin(zt_frame *frame);
+
+/* Takes samples for the pixels that wait, and then writes them and all further channels to the
+ * image. ZT_ESTOPPED. */
+zt_status zt_refine(zt_frame *frame);
+
+#endif

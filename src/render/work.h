@@ -1,0 +1,78 @@
+/* A frame under way: what its threads work with, and what they share. */
+#ifndef ZT_RENDER_WORK_H
+#define ZT_RENDER_WORK_H
+
+#include <assert.h>
+#include <stdatomic.h>
+
+#include "render/film.h"
+#include "render/render.h"
+#include "render/samples.h"
+
+/* A tile is a batch. */
+enum { TILE_SIDE = 16 };
+static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
+
+/* What one thread works with; its contents mean nothing between calls, but for the count, which
+ * is the frame's. */
+typedef struct zt_render_thread {
+    /* The pixels of a block, and what their samples add up to. */
+    alignas(64) int32_t column[ZT_BATCH];
+    alignas(64) int32_t row[ZT_BATCH];
+    zt_radiance sum;
+    alignas(64) int32_t taken[ZT_BATCH]; /* samples in the sum */
+    zt_places places;
+    zt_rays rays;
+    zt_radiance light;
+    zt_film_sums sums;
+    void *kernel; /* what it works with */
+    zt_render_count count;
+} zt_render_thread;
+
+struct zt_render_work {
+    int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each pixel within a tile */
+    zt_render_thread *threads;
+    zt_film film;
+};
+
+typedef struct zt_frame {
+    zt_image *image;
+    const zt_render_job *job;
+    zt_render_work *work;
+    zt_pool *pool;
+    int tile_columns, tile_count;
+    int run;       /* tiles that a thread takes at a time */
+    bool is_first; /* of more to come: one sample in the middle of each pixel, with its path */
+    atomic_bool stopped;
+} zt_frame;
+
+static inline int min_int(int a, int b) { return a < b ? a : b; }
+static inline int max_int(int a, int b) { return a > b ? a : b; }
+
+/* Traces the batch's first `count` places. */
+static inline void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count) {
+    const zt_render_job *job = f->job;
+    const zt_places *p = &own->places;
+    zt_lens_rays(&own->rays, job->lens, p->x, p->y, p->u, p->v, count);
+    own->light.counts = (zt_ray_counts){0};
+    job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
+    own->count.samples += count;
+    own->count.rays.primary += own->light.counts.primary;
+    own->count.rays.shadow += own->light.counts.shadow;
+    own->count.rays.mirror += own->light.counts.mirror;
+}
+
+/* Whether somebody asked to stop. */
+static inline bool zt_frame_stopped(zt_frame *f) {
+    if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return true;
+    if (!f->job->stopped || !f->job->stopped(f->job->user)) return false;
+    atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
+    return true;
+}
+
+/* Infinities and NaN, alone of all numbers, are not 0 when taken from themselves. */
+static inline bool zt_finite3(float r, float g, float b) {
+    return (r - r) + (g - g) + (b - b) == 0;
+}
+
+#endif
