@@ -179,6 +179,27 @@ static void doubts(void **state) {
     }
 }
 
+/* A lens that is not the plain one is said in words; numbers that move are not. */
+static void in_words(void **state) {
+    (void)state;
+    static const char *const cases[][2] = {
+        {"fov: 30", ""},
+        {"focal_length: 35", "focal length 35"},
+        {"focal_length: 35, f_number: 1.4, focus_distance: 3, blades: 6",
+         "focal length 35, f/1.4, 6 blades"},
+        {"aperture: 0.1, focus_distance: 3", "opening 0.1"},
+        {"aperture: \"= t\", focus_distance: 3", "an opening that moves"},
+        {"lens: orthographic, height: 5", "orthographic, height 5"},
+        {"lens: equirectangular", "equirectangular"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256];
+        snprintf(text, sizeof text, FILM "camera: { %s }\n", cases[i][0]);
+        zt_animation *animation = animation_of(text);
+        assert_string_equal(zt_animation_lens(animation).text, cases[i][1]);
+        zt_animation_free(&animation);
+    }
+}
+
 /* ---- advice ---------------------------------------------------------------------------------
  */
 
@@ -224,10 +245,9 @@ static void grains(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(kinds),  cmocka_unit_test(openings),
-        cmocka_unit_test(keyed),  cmocka_unit_test(focus_by_name),
-        cmocka_unit_test(doubts), cmocka_unit_test(focus_behind),
-        cmocka_unit_test(grains),
+        cmocka_unit_test(kinds),         cmocka_unit_test(openings), cmocka_unit_test(keyed),
+        cmocka_unit_test(focus_by_name), cmocka_unit_test(doubts),   cmocka_unit_test(in_words),
+        cmocka_unit_test(focus_behind),  cmocka_unit_test(grains),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -63,6 +63,12 @@ void zt_animation_free(zt_animation **animation);
 const zt_film *zt_animation_film(const zt_animation *animation);
 zt_contents zt_animation_contents(const zt_animation *animation);
 
+/* What the camera's lens is, in words; "" of a perspective pinhole that is given by its fov. */
+typedef struct zt_lens_words {
+    char text[160];
+} zt_lens_words;
+zt_lens_words zt_animation_lens(const zt_animation *animation);
+
 /* One thing that moves, in words. */
 typedef struct zt_movement {
     const char *name;   /* "ball.center", "camera.fov"; owned by the animation */

@@ -170,7 +170,9 @@ static void print_movements(const zt_animation *animation, int count) {
 
 void zt_report_contents(const zt_animation *animation) {
     zt_contents contents = zt_animation_contents(animation);
+    zt_lens_words lens = zt_animation_lens(animation);
     print_film(zt_animation_film(animation));
+    if (*lens.text) printf("lens       %s\n", lens.text);
     print_things(&contents);
     print_movements(animation, contents.track_count);
 }
