@@ -199,10 +199,10 @@ zt_gap zt_chords_gap(const zt_chords *chords, const zt_glance *a, const zt_glanc
         for (int32_t k = part->first; k < part->first + part->count; k++) {
             vec3 way = vec3_sub(b->marks[k], a->marks[k]);
             vec3 off = vec3_sub(vec3_sub(t->marks[k], a->marks[k]), vec3_scale(way, between));
-            most = fmax(most, vec3_dot(off, off)); /* what is no number is not met by rays */
+            double square = vec3_dot(off, off);
+            if (square > most) most = square; /* what is no number is not met by rays */
         }
-        if (part->kind == ZT_PART_POWER || part->kind == ZT_PART_VALUE)
-            allowed = fmax(allowed, fmax(a->allowed[i], b->allowed[i]));
+        if (zt_part_is_relative(part)) allowed = part->most_allowed;
         if (!(most > gap.share * gap.share * allowed * allowed)) continue;
         gap.share = allowed > 0 ? fmin(sqrt(most) / allowed, DBL_MAX) : DBL_MAX;
         gap.part = i;

@@ -106,7 +106,8 @@ double zt_marks_ball(vec3 *center, const vec3 *points, int count) {
     double most = 0;
     for (int i = 0; i < count; i++) {
         vec3 way = vec3_sub(points[i], sum);
-        most = fmax(most, vec3_dot(way, way));
+        double square = vec3_dot(way, way);
+        if (square > most) most = square;
     }
     *center = sum;
     return sqrt(most);
@@ -254,7 +255,8 @@ void zt_marks_make(zt_glance *glance, const zt_chords *chords) {
                zt_camera_xform(&scene->camera)};
     zt_scene_worlds(chords->worlds, scene, chords->origin);
     for (int32_t i = 0; i < chords->part_count; i++) {
-        const zt_part *part = &chords->parts[i];
+        zt_part *part = &chords->parts[i];
         glance->allowed[i] = mark_part(glance->marks + part->first, part, &s);
+        part->most_allowed = fmax(part->most_allowed, glance->allowed[i]);
     }
 }

@@ -32,7 +32,14 @@ struct zt_part {
     const zt_property *property;
     const xform *anchor; /* of planes with patterns in groups that move: places in the group */
     double reach;        /* of planes: how long their normals are taken to be */
+    double most_allowed; /* at any moment that was looked at */
 };
+
+/* Colors and the like are measured by the largest that they were, since light is a sum over all
+ * of the opening. */
+static inline bool zt_part_is_relative(const zt_part *part) {
+    return part->kind == ZT_PART_POWER || part->kind == ZT_PART_VALUE;
+}
 
 /* Writes the marks of an object: all of its points are means of these, so that none is off more
  * than they are. Returns how many there are: none of planes and groups. */

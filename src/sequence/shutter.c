@@ -11,7 +11,7 @@ enum {
     LOOKS_LEAST = 4,
     LOOKS_MOST = 64,
     FIRST_TESTS_MOST = 16,
-    LOOKS_WORK = 160 * 1000, /* objects and tracks */
+    LOOKS_WORK = 80 * 1000, /* objects and tracks */
     /* Intervals that are still to be looked at: what may be halved 12 times, from each of the
      * first ones. */
     PENDING_MAX = LOOKS_MOST + 64
@@ -19,6 +19,10 @@ enum {
 
 /* All moments of an opening take no more memory. */
 #define MEMORY_MAX (512.0 * 1024 * 1024)
+
+/* What is off its way for no longer than this share of the opening cannot be seen: it is while
+ * something else changes at once. */
+#define LOST_MOST (1.0 / 64)
 
 /* What never leaves its place by more than this share of what is allowed is still. */
 #define STILL (1.0 / 64)
@@ -36,10 +40,11 @@ typedef struct opening {
     zt_glance *pending[PENDING_MAX]; /* moments still to come, the next one last */
     int pending_count;
     zt_glance *moments[ZT_TIME_CELLS + 1];
-    bool steps[ZT_TIME_CELLS + 1];
+    bool steps[ZT_TIME_CELLS + 1]; /* of the way from each moment to the next one: it is one, */
+    zt_gap gaps[ZT_TIME_CELLS + 1]; /* and what is off it */
     int32_t moment_count, moments_most;
-    zt_gap worst, worst_step;
-    int32_t step_moment; /* before the step that is largest */
+    double step_share;                    /* of the largest step, */
+    const zt_glance *step_from, *step_to; /* which is between these */
 } opening;
 
 /* The time of a moment, in seconds. */
@@ -119,11 +124,12 @@ static zt_status test_narrow(bool *step, zt_gap *gap, opening *o, const zt_glanc
         if (as_b.share < as_a.share) as_a = as_b;
         if (as_a.share > left.share) left = as_a;
     }
-    *step = gap->share > 1;
+    *step = gap->share > 1 && left.share < gap->share;
     if (!*step) return ZT_OK;
-    if (gap->share > o->worst_step.share) {
-        o->worst_step = *gap;
-        o->step_moment = o->moment_count - 1;
+    if (gap->share > o->step_share) {
+        o->step_share = gap->share;
+        o->step_from = a;
+        o->step_to = b;
     }
     *gap = left;
     return ZT_OK;
@@ -145,8 +151,8 @@ static zt_status advance(opening *o) {
         return ZT_OK;
     }
     if (split) give_back(o, split);
-    if (gap.share > o->worst.share) o->worst = gap;
     o->steps[o->moment_count - 1] = step;
+    o->gaps[o->moment_count - 1] = gap;
     o->moments[o->moment_count++] = b;
     o->pending_count--;
     return ZT_OK;
@@ -175,6 +181,38 @@ static zt_status begin(opening *o) {
     return ZT_OK;
 }
 
+/* Whether the way from one moment to another passes the one between them, which ends the
+ * intervals `first` and `second`: nothing is off it by more than it was off its own way, and
+ * what the one between is off. */
+static bool passes(zt_gap *gap, const opening *o, int32_t first, int32_t second) {
+    if (o->steps[first] || o->steps[second]) return false;
+    const zt_glance *a = o->moments[first], *b = o->moments[second],
+                    *c = o->moments[second + 1];
+    zt_gap own =
+        o->gaps[first].share > o->gaps[second].share ? o->gaps[first] : o->gaps[second];
+    *gap = zt_chords_gap(&o->chords, a, c, b, (b->cell - a->cell) / (c->cell - a->cell));
+    if (own.share > gap->share) gap->part = own.part;
+    gap->share += own.share;
+    return gap->share <= 1;
+}
+
+/* Leaves out moments that are passed anyway. */
+static void thin_out(opening *o) {
+    int32_t kept = 0;
+    for (int32_t i = 1; i < o->moment_count; i++) {
+        zt_gap gap;
+        if (i < o->moment_count - 1 && passes(&gap, o, kept, i)) {
+            o->gaps[kept] = gap;
+            continue;
+        }
+        kept++;
+        o->moments[kept] = o->moments[i];
+        o->steps[kept] = o->steps[i];
+        o->gaps[kept] = o->gaps[i];
+    }
+    o->moment_count = kept + 1;
+}
+
 static zt_status divide(opening *o) {
     double size = (double)zt_chords_glance_size(&o->chords);
     o->moments_most = ZT_TIME_CELLS + 1;
@@ -183,6 +221,7 @@ static zt_status divide(opening *o) {
     if (!o->splits) return ZT_EMEMORY;
     ZT_TRY(begin(o));
     while (o->pending_count > 0) ZT_TRY(advance(o));
+    thin_out(o);
     return ZT_OK;
 }
 
@@ -224,6 +263,18 @@ static int32_t track_between(const zt_animation *animation, const zt_scene *a,
     return found;
 }
 
+/* What is off most. What is off by more than is allowed counts if it is so for long enough. */
+static zt_gap worst_gap(const opening *o) {
+    zt_gap worst = {0, -1}, beyond = {0, -1};
+    double cells = 0;
+    for (int32_t i = 0; i < o->moment_count - 1; i++) {
+        zt_gap *most = o->gaps[i].share > 1 ? &beyond : &worst;
+        if (o->gaps[i].share > most->share) *most = o->gaps[i];
+        if (most == &beyond) cells += o->moments[i + 1]->cell - o->moments[i]->cell;
+    }
+    return cells > LOST_MOST * ZT_TIME_CELLS ? beyond : worst;
+}
+
 static void write_division(zt_division *division, const opening *o) {
     const zt_chords *chords = &o->chords;
     int32_t most = -1;
@@ -232,12 +283,13 @@ static void write_division(zt_division *division, const opening *o) {
     division->moment_count = o->moment_count;
     division->asked = most >= 0;
     if (most >= 0) division->most = zt_chords_thing(chords, most);
-    division->off = o->worst.share;
-    if (o->worst.part >= 0) division->worst = zt_chords_thing(chords, o->worst.part);
+    zt_gap worst = worst_gap(o);
+    division->off = worst.share;
+    if (worst.part >= 0) division->worst = zt_chords_thing(chords, worst.part);
     for (int32_t i = 0; i < o->moment_count - 1; i++) division->step_count += o->steps[i];
     if (division->step_count > 0)
-        division->stepping = track_between(o->animation, &o->moments[o->step_moment]->scene,
-                                           &o->moments[o->step_moment + 1]->scene);
+        division->stepping =
+            track_between(o->animation, &o->step_from->scene, &o->step_to->scene);
 }
 
 static zt_status expose_moment(zt_exposure *exposure, const zt_animation *animation,
@@ -259,12 +311,8 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
     opening *o = ZT_PUSH(arena, opening, 1);
     zt_glance *first;
     if (!o) return ZT_EMEMORY;
-    *o = (opening){.animation = animation,
-                   .arena = arena,
-                   .listener = listener,
-                   .frame = frame,
-                   .worst = {0, -1},
-                   .worst_step = {0, -1}};
+    *o =
+        (opening){.animation = animation, .arena = arena, .listener = listener, .frame = frame};
     ZT_TRY(zt_chords_open(&o->chords, &first, animation, open_s, height, arena, listener));
     o->first = first;
     ZT_TRY(divide(o));
