@@ -62,6 +62,7 @@ typedef struct zt_ladder {
         references[ZT_REFERENCES_MAX]; /* the first is that of the film's own filter */
     int reference_count;
     char precision[320]; /* in which precision the first frame is rendered, and why */
+    char motion[512];    /* how the shutter's opening is divided, and why; or "" */
     const char *left_out[ZT_LEFT_OUT_MAX]; /* what the first frame does without, in words */
     int left_out_count;
 } zt_ladder;

@@ -9,7 +9,9 @@
 #include <zoetrope/animation.h>
 #include <zoetrope/drawing.h>
 #include <zoetrope/explain.h>
+#include <zoetrope/frames.h>
 #include <zoetrope/image.h>
+#include <zoetrope/ladder.h>
 #include <zoetrope/manifest.h>
 #include <zoetrope/output.h>
 #include <zoetrope/rate.h>

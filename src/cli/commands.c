@@ -19,6 +19,9 @@ static const char images[] =
 static const char drawings[] = "  curves.svg       a drawing\n"
                                "  curves.png       the same as an image\n";
 
+static const char reports[] =
+    "  report.html      a page; report.svg, .png, .csv and .json come beside it\n";
+
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
@@ -39,14 +42,23 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                            "Plots properties over time, or all that move: ball.center",
                            "output/NAME.curves.svg", drawings,
                            ANYWHERE | BIT(OUTPUT) | BIT(FRAMES)},
+    [ZT_COMMAND_REPORT] = {"report", "FILE", 1, 0,
+                           "Sets error against run time, from a sample a pixel to many",
+                           "output/NAME.report.html", reports,
+                           ANYWHERE | BIT(OUTPUT) | BIT(FRAME) | BIT(SIZE) | BIT(SAMPLES) |
+                               BIT(FILTERS) | BIT(TIME_PER_FRAME) | BIT(THREADS) |
+                               BIT(PRECISION)},
 };
 
 const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
     [ZT_OPTION_OUTPUT] = {"output", 'o', "TARGET", "where the results go"},
     [ZT_OPTION_FRAMES] = {"frames", 0, "10-40",
                           "only these frames, or one (7); the first is 0"},
+    [ZT_OPTION_FRAME] = {"frame", 0, "10,40",
+                         "the frames to measure; the middle one by default"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
+    [ZT_OPTION_FILTERS] = {"filters", 0, NULL, "measure each filter, not the film's own alone"},
     [ZT_OPTION_TIME] = {"time", 0, "20min",
                         "choose samples so that all frames take about as long: ms s min h"},
     [ZT_OPTION_TIME_PER_FRAME] = {"time-per-frame", 0, "2s",

@@ -13,6 +13,7 @@ typedef enum zt_command {
     ZT_COMMAND_CHECK,
     ZT_COMMAND_EXPLAIN,
     ZT_COMMAND_CURVES,
+    ZT_COMMAND_REPORT,
     ZT_COMMAND_COUNT /* none of them */
 } zt_command;
 
@@ -32,8 +33,10 @@ extern const zt_command_row zt_commands[ZT_COMMAND_COUNT];
 typedef enum zt_option {
     ZT_OPTION_OUTPUT,
     ZT_OPTION_FRAMES,
+    ZT_OPTION_FRAME,
     ZT_OPTION_SIZE,
     ZT_OPTION_SAMPLES,
+    ZT_OPTION_FILTERS,
     ZT_OPTION_TIME,
     ZT_OPTION_TIME_PER_FRAME,
     ZT_OPTION_MANIFEST,

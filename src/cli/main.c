@@ -11,6 +11,7 @@
 #include <zoetrope/zoetrope.h>
 
 #include "cli/curves.h"
+#include "cli/errors.h"
 #include "cli/explain.h"
 #include "cli/options.h"
 #include "cli/progress.h"
@@ -187,6 +188,9 @@ static zt_status run(const zt_options *options, const zt_manifest *manifest,
                                  : explain_frames(options, animation, report);
     case ZT_COMMAND_CURVES:
         return zt_curves(options, animation, report);
+    case ZT_COMMAND_REPORT:
+        listen_for_interrupts();
+        return zt_errors_report(options, animation, stopped, report);
     default:
         return render(options, manifest, animation, report);
     }

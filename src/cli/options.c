@@ -326,6 +326,8 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
     options->manifest = values[ZT_OPTION_MANIFEST];
+    options->frame_list = values[ZT_OPTION_FRAME];
+    options->filters = values[ZT_OPTION_FILTERS] != NULL;
     options->sample = -1;
     pass_on(options, values);
     return fit_together(values, report) &&
@@ -388,6 +390,9 @@ char *zt_options_target(const zt_options *options) {
         break;
     case ZT_COMMAND_CURVES:
         printed = asprintf(&target, "output/%.*s.curves.svg", length, name);
+        break;
+    case ZT_COMMAND_REPORT:
+        printed = asprintf(&target, "output/%.*s.report.html", length, name);
         break;
     case ZT_COMMAND_PREVIEW:
         printed = asprintf(&target, "output/%.*s.preview.mp4", length, name);

@@ -17,6 +17,8 @@ typedef struct zt_options {
     const char *file;              /* the description */
     const char *target;            /* NULL: the command's own */
     const char *question;          /* of explain: "ball.center@37"; NULL: precisions */
+    const char *frame_list;        /* of report, as zt_frames_read takes it; or NULL */
+    bool filters;                  /* of report: each of them */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;
     bool all_frames;                                  /* else first .. last, both included */

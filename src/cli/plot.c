@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/svg.h"
 #include "cli/trace.h"
 
 /* All in units of the drawing: pixels of a plain display. */
@@ -26,11 +27,6 @@ enum {
     FRAME_TICKS_MAX = 130
 };
 
-/* M. Okabe and K. Ito, "Color Universal Design", 2008: told apart by nearly all eyes. */
-static const char *const hues[ZT_SUBJECT_CHANNELS_MAX] = {"#d55e00", "#009e73", "#0072b2",
-                                                          "#cc79a7", "#e69f00", "#56b4e9",
-                                                          "#5b4b00", "#7f3c8d", "#555555"};
-
 /* A panel on its way into the drawing. */
 typedef struct panel {
     FILE *out;
@@ -45,45 +41,12 @@ typedef struct panel {
 /* The colour of a channel. Those of rotations begin with w, so that x y z stay what they are.
  */
 static const char *hue(const zt_subject *subject, int channel) {
-    if (subject->channel_count == 1) return hues[2];
-    return hues[subject->channel_count == 4 ? (channel + 3) % 4 : channel];
+    if (subject->channel_count == 1) return zt_svg_hues[2];
+    return zt_svg_hues[subject->channel_count == 4 ? (channel + 3) % 4 : channel];
 }
 
 /* ---- numbers and words ---------------------------------------------------------------------
  */
-
-/* A coordinate, to a hundredth, without zeros at its end. */
-static void print_number(FILE *out, double x) {
-    char text[64];
-    int length = snprintf(text, sizeof text, "%.2f", x);
-    while (text[length - 1] == '0') text[--length] = '\0';
-    if (text[length - 1] == '.') text[--length] = '\0';
-    fputs(strcmp(text, "-0") == 0 ? "0" : text, out);
-}
-
-static int letter_count(const char *text) {
-    int count = 0;
-    for (; *text; text++) count += ((unsigned char)*text & 0xC0) != 0x80;
-    return count;
-}
-
-/* At most `most` letters of a text, safe within XML. */
-static void print_words(FILE *out, const char *text, int most) {
-    bool cut = letter_count(text) > most;
-    for (int letters = 0; *text; text++) {
-        unsigned char byte = (unsigned char)*text;
-        if ((byte & 0xC0) != 0x80 && letters++ >= most - cut) break;
-        if (byte == '&')
-            fputs("&amp;", out);
-        else if (byte == '<')
-            fputs("&lt;", out);
-        else if (byte < ' ' || byte == 0x7F)
-            fputc('?', out);
-        else
-            fputc(byte, out);
-    }
-    if (cut) fputs("…", out);
-}
 
 /* 1, 2 or 5 times a power of ten, whichever is nearest to a `count`-th of the range. */
 static double nice_step(double range, int count) {
@@ -121,19 +84,6 @@ static void choose_range(panel *p) {
     p->high = fmin(p->trace.high + air, 1.7e308);
 }
 
-static void print_line(FILE *out, double x1, double y1, double x2, double y2,
-                       const char *class) {
-    fprintf(out, "<path class=\"%s\" d=\"M", class);
-    print_number(out, x1);
-    fputc(' ', out);
-    print_number(out, y1);
-    fputc('L', out);
-    print_number(out, x2);
-    fputc(' ', out);
-    print_number(out, y2);
-    fputs("\"/>\n", out);
-}
-
 static void print_value_axis(const panel *p) {
     double step = nice_step((p->high / 2 - p->low / 2) * 2, 5);
     if (!isfinite(step) || !(step > 0)) step = p->high / 2 - p->low / 2;
@@ -141,9 +91,9 @@ static void print_value_axis(const panel *p) {
     for (int i = 0; i <= end - begin && i <= MARKS_MAX; i++) {
         bool zero = begin + i == 0;
         double value = zero ? 0 : (begin + i) * step, y = y_of(p, value);
-        print_line(p->out, LEFT, y, RIGHT, y, zero ? "zero" : "grid");
+        zt_svg_line(p->out, LEFT, y, RIGHT, y, zero ? "zero" : "grid");
         fprintf(p->out, "<text x=\"%d\" y=\"", LEFT - 8);
-        print_number(p->out, y + 4);
+        zt_svg_number(p->out, y + 4);
         fprintf(p->out, "\" class=\"n end\">%.6g</text>\n", value);
     }
 }
@@ -154,11 +104,11 @@ static void print_time_axis(const panel *p, double bottom) {
     double begin = ceil(p->first_s / step - 1e-9), end = floor(p->last_s / step + 1e-9);
     for (int i = 0; i <= end - begin && i <= MARKS_MAX; i++) {
         double time_s = begin + i == 0 ? 0 : (begin + i) * step, x = x_of(p, time_s);
-        print_line(p->out, x, p->top, x, p->top + PLOT_HEIGHT, "grid");
+        zt_svg_line(p->out, x, p->top, x, p->top + PLOT_HEIGHT, "grid");
         fputs("<text x=\"", p->out);
-        print_number(p->out, x);
+        zt_svg_number(p->out, x);
         fputs("\" y=\"", p->out);
-        print_number(p->out, bottom + 18);
+        zt_svg_number(p->out, bottom + 18);
         fprintf(p->out, "\" class=\"n mid\">%.6g s</text>\n", time_s);
     }
     int64_t first = (int64_t)ceil(p->first_s * film->rate.num / film->rate.den - 1e-6);
@@ -167,12 +117,12 @@ static void print_time_axis(const panel *p, double bottom) {
         fputs("<path class=\"tick\" d=\"", p->out);
         for (int64_t frame = first; frame <= last; frame++) {
             fputc('M', p->out);
-            print_number(p->out, x_of(p, zt_rate_time(film->rate, frame)));
+            zt_svg_number(p->out, x_of(p, zt_rate_time(film->rate, frame)));
             fprintf(p->out, " %gv-4", p->top + PLOT_HEIGHT);
         }
         fputs("\"/>\n", p->out);
     }
-    print_line(p->out, LEFT, p->top + PLOT_HEIGHT, RIGHT, p->top + PLOT_HEIGHT, "axis");
+    zt_svg_line(p->out, LEFT, p->top + PLOT_HEIGHT, RIGHT, p->top + PLOT_HEIGHT, "axis");
 }
 
 /* ---- lines and keys ------------------------------------------------------------------------
@@ -202,9 +152,9 @@ static void print_channel(const panel *p, int channel) {
     fprintf(p->out, "<path class=\"line\" stroke=\"%s\" d=\"", hue(p->subject, channel));
     for (int i = 0, before = -1; i != before && i < p->trace.count;) {
         fputc(before < 0 ? 'M' : 'L', p->out);
-        print_number(p->out, x_of(p, zt_trace_time(&p->trace, i)));
+        zt_svg_number(p->out, x_of(p, zt_trace_time(&p->trace, i)));
         fputc(' ', p->out);
-        print_number(p->out, y_of(p, zt_trace_value(&p->trace, i, channel)));
+        zt_svg_number(p->out, y_of(p, zt_trace_value(&p->trace, i, channel)));
         before = i;
         if (i + 1 < p->trace.count) i = next_kept(p, channel, i);
     }
@@ -225,9 +175,9 @@ static void print_keys(const panel *p) {
         for (int c = 0; c < subject->channel_count; c++) {
             if (key.value[c] < p->low || key.value[c] > p->high) continue;
             fputs("<circle cx=\"", p->out);
-            print_number(p->out, x_of(p, key.time_s));
+            zt_svg_number(p->out, x_of(p, key.time_s));
             fputs("\" cy=\"", p->out);
-            print_number(p->out, y_of(p, key.value[c]));
+            zt_svg_number(p->out, y_of(p, key.value[c]));
             fprintf(p->out, "\" r=\"%s\" fill=\"%s\"/>\n", shown > 60 ? "2" : "3.5",
                     hue(subject, c));
         }
@@ -248,9 +198,9 @@ static zt_status print_strip(const panel *p, double top) {
         before = words;
         double x = x_of(p, p->first_s + i * step_s);
         fputs("<rect x=\"", p->out);
-        print_number(p->out, x);
+        zt_svg_number(p->out, x);
         fprintf(p->out, "\" y=\"%g\" width=\"", top);
-        print_number(p->out, RIGHT - x); /* the next one covers the rest */
+        zt_svg_number(p->out, RIGHT - x); /* the next one covers the rest */
         fprintf(p->out, "\" height=\"%d\" fill=\"%s\"/>\n", STRIP_HEIGHT, words.text);
     }
     fprintf(p->out, "</g>\n<path class=\"tick\" d=\"M%d %gh%dv%dh-%dz\"/>\n", LEFT, top,
@@ -266,12 +216,12 @@ static void print_title(const panel *p, double panel_top) {
     int legend = subject->channel_count > 1 ? subject->channel_count * LEGEND_SLOT : 0;
     int letters = (RIGHT - LEFT - legend - 240) / 9;
     fprintf(p->out, "<text x=\"%d\" y=\"%g\" class=\"title\">", LEFT, panel_top + 25);
-    print_words(p->out, subject->name, letters > 12 ? letters : 12);
+    zt_svg_words(p->out, subject->name, letters > 12 ? letters : 12);
     fputs("<tspan class=\"n\" dx=\"10\">", p->out);
     zt_subject_key key = {.ease = ""};
     if (subject->key_count > 0) key = zt_subject_key_at(subject, 0);
     bool eased = strcmp(subject->driver, "eased") == 0; /* by one easing for all */
-    print_words(p->out, eased ? key.ease : subject->driver, 32);
+    zt_svg_words(p->out, eased ? key.ease : subject->driver, 32);
     if (subject->key_count > 0)
         fprintf(p->out, ", %d key%s", subject->key_count, subject->key_count == 1 ? "" : "s");
     if (*subject->unit) fprintf(p->out, ", in %s", subject->unit);
@@ -303,20 +253,6 @@ static zt_status print_panel(panel *p, double top) {
     return subject->is_color ? print_strip(p, p->top + PLOT_HEIGHT) : ZT_OK;
 }
 
-static void print_head(FILE *out, int height) {
-    fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" font-family=\"DejaVu Sans,Verdana,sans-serif\">\n"
-            "<style>.n{font-size:11px;font-weight:normal;fill:#59636e}"
-            ".title{font-size:13px;font-weight:bold;fill:#1f2328}"
-            ".end{text-anchor:end}.mid{text-anchor:middle}"
-            "path{fill:none}.grid{stroke:#eceef1}.zero{stroke:#c9cfd6}"
-            ".axis,.tick{stroke:#8b949e}.line{stroke-width:1.8;stroke-linejoin:round}"
-            "circle{stroke:#fff;stroke-width:1}</style>\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-            WIDTH, height, WIDTH, height, WIDTH, height);
-}
-
 static void print_foot(FILE *out, const zt_film *film, int64_t first, int64_t last,
                        int height) {
     char rate[40];
@@ -336,7 +272,7 @@ static zt_status draw(FILE *out, const zt_subject *subjects, int count, int64_t 
     const zt_film *film = zt_animation_film(subjects->film);
     int height = FOOT, top = 0;
     for (int i = 0; i < count; i++) height += panel_height(&subjects[i]);
-    print_head(out, height);
+    zt_svg_begin(out, WIDTH, height);
     zt_status status = ZT_OK;
     for (int i = 0; i < count && status == ZT_OK; i++) {
         panel p = {.out = out,

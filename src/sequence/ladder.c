@@ -291,6 +291,7 @@ static zt_status plan(climb *c) {
     ZT_TRY(choose_samples(c));
     ZT_TRY(zt_renderer_choices(&choices, r, frame));
     memcpy(ladder->precision, choices.precision_text, sizeof ladder->precision);
+    memcpy(ladder->motion, choices.motion_text, sizeof ladder->motion);
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&exposure, &division, c->animation, frame, ladder->height,
                              &r->frame, c->listener));

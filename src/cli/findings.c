@@ -1,0 +1,135 @@
+#include "cli/findings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double asked_for[ZT_ADVICE_COUNT] = {0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
+static const double usual = 0.005; /* what is recommended where it can be had */
+
+static int count_even(const zt_ladder *ladder) {
+    int count = 0;
+    while (count < ladder->rung_count && ladder->rungs[count].kind == ZT_RUNG_SAMPLES &&
+           !ladder->rungs[count].other_precision && ladder->rungs[count].reference == 0)
+        count++;
+    return count;
+}
+
+/* A single sample is in the middle of its pixel and no random one; and what is near the
+ * reference's own error is not known well enough. */
+static void fit(zt_findings *f) {
+    enum { MOST = 64 };
+    double time[MOST], samples[MOST], error[MOST];
+    const zt_rung *rungs = f->ladder->rungs;
+    f->first_fitted = f->even_count > 1 ? 1 : 0;
+    for (int i = f->first_fitted; i < f->even_count && f->fitted_count < MOST; i++) {
+        if (!zt_ladder_knows(f->ladder, &rungs[i]) || !(rungs[i].error.rmse > 0)) break;
+        time[f->fitted_count] = rungs[i].frame_s;
+        samples[f->fitted_count] = rungs[i].sampling.max;
+        error[f->fitted_count++] = rungs[i].error.rmse;
+    }
+    f->slope_time = zt_ladder_slope(time, error, f->fitted_count);
+    f->slope_samples = zt_ladder_slope(samples, error, f->fitted_count);
+    int knee = zt_ladder_knee(time, error, f->fitted_count);
+    f->knee = knee < 0 ? -1 : f->first_fitted + knee;
+}
+
+zt_findings zt_findings_of(const zt_ladder *ladder, const zt_animation *animation) {
+    zt_findings f = {
+        .ladder = ladder, .animation = animation, .even_count = count_even(ladder), .best = -1};
+    fit(&f);
+    for (int i = 0; i < ZT_ADVICE_COUNT; i++) {
+        f.advice[i] = (zt_advice){asked_for[i], zt_ladder_choose(ladder, asked_for[i])};
+        if (f.advice[i].rung >= 0 && asked_for[i] >= usual) f.best = i;
+    }
+    return f;
+}
+
+double zt_findings_film_s(const zt_findings *findings, const zt_rung *rung) {
+    return rung->frame_s * (double)zt_animation_film(findings->animation)->frame_count;
+}
+
+/* ---- words ---------------------------------------------------------------------------------
+ */
+
+const char *zt_filter_name(zt_filter filter) {
+    static const char *const names[ZT_FILTER_COUNT] = {[ZT_FILTER_BOX] = "box",
+                                                       [ZT_FILTER_TENT] = "tent",
+                                                       [ZT_FILTER_GAUSSIAN] = "gaussian",
+                                                       [ZT_FILTER_MITCHELL] = "mitchell",
+                                                       [ZT_FILTER_BLACKMAN_HARRIS] =
+                                                           "blackman-harris"};
+    return names[filter];
+}
+
+const char *zt_precision_name(zt_precision precision) {
+    return precision == ZT_PRECISION_DOUBLE ? "double" : "single";
+}
+
+zt_words zt_words_of_rung(const zt_rung *rung) {
+    zt_words w;
+    const zt_sampling *s = &rung->sampling;
+    size_t size = sizeof w.text;
+    if (rung->kind == ZT_RUNG_ADAPTIVE)
+        snprintf(w.text, size, "adaptive, error %g", s->error);
+    else if (rung->kind == ZT_RUNG_EDGES)
+        snprintf(w.text, size, "edges, error %g", s->error);
+    else
+        snprintf(w.text, size, "%d sample%s", s->max, s->max == 1 ? "" : "s");
+    size_t used = strlen(w.text);
+    if (rung->other_precision)
+        snprintf(w.text + used, size - used, ", %s precision",
+                 zt_precision_name(rung->precision));
+    if (rung->reference > 0)
+        snprintf(w.text + used, size - used, ", %s filter", zt_filter_name(s->filter));
+    return w;
+}
+
+zt_words zt_words_of_setting(const zt_rung *rung) {
+    zt_words w;
+    const zt_sampling *s = &rung->sampling;
+    if (rung->kind == ZT_RUNG_SAMPLES)
+        snprintf(w.text, sizeof w.text, "samples: %d", s->max);
+    else
+        snprintf(w.text, sizeof w.text, "%ssamples: { min: %d, max: %d, error: %g }",
+                 rung->kind == ZT_RUNG_EDGES ? "quality: edges, " : "", s->min, s->max,
+                 s->error);
+    return w;
+}
+
+zt_words zt_words_of_time(double s) {
+    zt_words w;
+    if (s < 0.9995)
+        snprintf(w.text, sizeof w.text, "%.*f ms", s < 0.00995 ? 1 : 0, 1000 * s);
+    else if (s < 99.5)
+        snprintf(w.text, sizeof w.text, "%.*f s", s < 9.95 ? 1 : 0, s);
+    else if (s < 3600)
+        snprintf(w.text, sizeof w.text, "%.0f min", s / 60);
+    else
+        snprintf(w.text, sizeof w.text, "%.*f h", s < 36000 ? 1 : 0, s / 3600);
+    return w;
+}
+
+zt_words zt_words_of_bytes(double bytes) {
+    zt_words w;
+    snprintf(w.text, sizeof w.text, "%.0f MB", bytes / 1e6);
+    return w;
+}
+
+zt_words zt_words_of_count(double count) {
+    zt_words w;
+    if (count < 1e4)
+        snprintf(w.text, sizeof w.text, "%.0f", count);
+    else if (count < 1e6)
+        snprintf(w.text, sizeof w.text, "%.0f thousand", count / 1e3);
+    else
+        snprintf(w.text, sizeof w.text, "%.*f million", count < 1e7 ? 1 : 0, count / 1e6);
+    return w;
+}
+
+zt_words zt_words_of_error(const zt_findings *findings, const zt_rung *rung) {
+    zt_words w;
+    bool known = zt_ladder_knows(findings->ladder, rung);
+    snprintf(w.text, sizeof w.text, "%s%.2g", known ? "" : "≤ ", rung->error.rmse);
+    return w;
+}
