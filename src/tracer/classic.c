@@ -7,12 +7,15 @@
 #include <string.h>
 
 #include "tracer/intersect.h"
+#include "tracer/lamps.h"
 #include "tracer/points.h"
+#include "tracer/sampler.h"
 
 #define intersect   ZT_KERNEL_NAME(zt_intersect)
 #define occlude     ZT_KERNEL_NAME(zt_occlude)
 #define may_meet    ZT_KERNEL_NAME(zt_may_meet)
 #define find_points ZT_KERNEL_NAME(zt_points_find)
+#define aim         ZT_KERNEL_NAME(zt_lamp_aim)
 
 /* What one thread works with; its contents mean nothing between calls. */
 typedef struct work {
@@ -26,8 +29,9 @@ typedef struct work {
     alignas(64) real lamp_r[ZT_BATCH];
     alignas(64) real lamp_g[ZT_BATCH];
     alignas(64) real lamp_b[ZT_BATCH];
-    alignas(64) int32_t wanted[ZT_BATCH]; /* which of the rays or points go on */
-    alignas(64) int32_t list[ZT_BATCH];   /* the numbers of those */
+    alignas(64) uint32_t hidden[ZT_BATCH]; /* a hash of the lamps that something hides */
+    alignas(64) int32_t wanted[ZT_BATCH];  /* which of the rays or points go on */
+    alignas(64) int32_t list[ZT_BATCH];    /* the numbers of those */
 } work;
 
 /* Loops run over whole groups of lanes: what lies beyond the count is computed and never used,
@@ -39,10 +43,10 @@ static bool all_wanted(const work *w, int count) {
     return all;
 }
 
-static bool any_wanted(const work *w, int count) {
-    int32_t any = 0;
-    for (int i = 0; i < count; i++) any |= w->wanted[i];
-    return any;
+static int count_wanted(const work *w, int count) {
+    int32_t wanted = 0;
+    for (int i = 0; i < count; i++) wanted += w->wanted[i];
+    return wanted;
 }
 
 /* Compacts, of `count` numbers 0, 1, …, those that are wanted; the rest of the last group of
@@ -137,42 +141,75 @@ static real cut(real x) {
     return low < 1 ? low : 1;
 }
 
-/* What a lamp gives each point where nothing is in between: added to the sums; or, where it may
- * be `hidden`, kept, with shadow rays for the points that it gives any. Others look no
- * distance, and meet nothing. */
+/* What a lamp gives point k where nothing is in between: added to the sums; or, where it may be
+ * `hidden`, kept, with a shadow ray for it if it is any. Others look no distance, and meet
+ * nothing. */
+static inline void give(work *restrict w, int k, bool hidden, real r, real g, real b,
+                        zt_lamp_way way) {
+    zt_batch *restrict shadow = &w->shadow;
+    r = cut(r * w->points.color_r[k]);
+    g = cut(g * w->points.color_g[k]);
+    b = cut(b * w->points.color_b[k]);
+    if (hidden) {
+        bool wanted = r + g + b > 0;
+        w->lamp_r[k] = r;
+        w->lamp_g[k] = g;
+        w->lamp_b[k] = b;
+        w->wanted[k] = wanted;
+        shadow->dx[k] = way.x;
+        shadow->dy[k] = way.y;
+        shadow->dz[k] = way.z;
+        shadow->t[k] = wanted ? way.distance : 0;
+        shadow->hit[k] = -1;
+    } else {
+        w->sum_r[k] += r;
+        w->sum_g[k] += g;
+        w->sum_b[k] += b;
+    }
+}
+
+/* The light of a point that stands still. */
 static inline void shine(work *restrict w, const zt_lamp *lamp, bool hidden) {
     const zt_origins *restrict from = &w->from;
     const zt_points *restrict p = &w->points;
-    zt_batch *restrict shadow = &w->shadow;
-    const real3 at = lamp->poses->position, power = lamp->poses->power;
+    const zt_lamp_pose pose = *lamp->poses;
     int padded = zt_batch_padded(p->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        real vx = at.x - from->x[k], vy = at.y - from->y[k], vz = at.z - from->z[k];
-        real toward = real_dot(p->nx[k], p->ny[k], p->nz[k], vx, vy, vz);
-        real distance = real_sqrt(real_dot(vx, vy, vz, vx, vy, vz)), near = 1 / distance;
-        real fade = toward * near * near * near;
-        fade = toward > 0 ? fade : 0;
-        real r = cut(power.x * fade * p->color_r[k]);
-        real g = cut(power.y * fade * p->color_g[k]);
-        real b = cut(power.z * fade * p->color_b[k]);
-        if (hidden) {
-            bool wanted = r + g + b > 0;
-            w->lamp_r[k] = r;
-            w->lamp_g[k] = g;
-            w->lamp_b[k] = b;
-            w->wanted[k] = wanted;
-            shadow->dx[k] = vx * near;
-            shadow->dy[k] = vy * near;
-            shadow->dz[k] = vz * near;
-            shadow->t[k] = wanted ? distance : 0;
-            shadow->hit[k] = -1;
-        } else {
-            w->sum_r[k] += r;
-            w->sum_g[k] += g;
-            w->sum_b[k] += b;
-        }
+        zt_lamp_way way = zt_point_way(&pose, from->x[k], from->y[k], from->z[k], p->nx[k],
+                                       p->ny[k], p->nz[k], 0, 0);
+        give(w, k, hidden, pose.power.x * way.fade, pose.power.y * way.fade,
+             pose.power.z * way.fade, way);
     }
-    shadow->count = p->count;
+    w->shadow.count = p->count;
+}
+
+/* The light of a lamp that has a size or moves: of one place on it for each point. */
+static inline void shine_from_places(work *restrict w, const zt_lamp *lamp, bool hidden,
+                                     const zt_rays *given, uint32_t dimension, bool straight) {
+    zt_batch *restrict shadow = &w->shadow;
+    int padded = zt_batch_padded(w->points.count);
+    aim(shadow, w->lamp_r, w->lamp_g, w->lamp_b, lamp, &w->points, given, dimension, straight);
+    WIDE_LOOP for (int k = 0; k < padded; k++)
+        give(w, k, hidden, w->lamp_r[k], w->lamp_g[k], w->lamp_b[k],
+             (zt_lamp_way){shadow->dx[k], shadow->dy[k], shadow->dz[k], shadow->t[k], 0});
+    shadow->count = w->points.count;
+}
+
+/* Of lamp number `index`, after so many mirrors. */
+static void shine_any(work *w, const zt_tracer *tracer, int32_t index, bool hidden,
+                      const zt_rays *given, int32_t depth) {
+    const zt_lamp *lamp = &tracer->lamps[index];
+    uint32_t dimension = (uint32_t)(ZT_DIMENSION_LAMPS + depth * tracer->lamp_count + index);
+    bool plain = lamp->kind == ZT_LAMP_POINT && !lamp->moves;
+    bool straight = lamp->moves && tracer->exposure->moment_count == 2;
+    if (plain && hidden)
+        shine(w, lamp, true);
+    else if (plain)
+        shine(w, lamp, false);
+    else if (hidden)
+        shine_from_places(w, lamp, true, given, dimension, straight);
+    else
+        shine_from_places(w, lamp, false, given, dimension, straight);
 }
 
 /* Adds a lamp's light where nothing hides it. */
@@ -186,26 +223,56 @@ static void add_lamp(work *restrict w) {
     }
 }
 
-static void light_points(work *restrict w, const zt_tracer *tracer, const zt_box *around) {
+/* Takes note of where lamp number `index` is hidden. */
+static void note_hidden(work *restrict w, int32_t index) {
+    const uint32_t number = zt_sample_mix((uint32_t)index + 1);
+    int padded = zt_batch_padded(w->points.count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) w->hidden[k] ^=
+        w->shadow.hit[k] >= 0 ? number : 0;
+}
+
+/* The sums of the ambient lights at the rays' times. */
+static void add_ambient(work *restrict w, const zt_tracer *tracer) {
     const zt_points *restrict p = &w->points;
+    const real *restrict between = w->from.between;
+    const int32_t *restrict moment = w->from.moment;
     int padded = zt_batch_padded(p->count);
-    WIDE_LOOP for (int k = 0; k < padded; k++) {
-        w->sum_r[k] = tracer->ambient.x * p->color_r[k];
-        w->sum_g[k] = tracer->ambient.y * p->color_g[k];
-        w->sum_b[k] = tracer->ambient.z * p->color_b[k];
-    }
+    const real3 still = tracer->ambient, *moving = tracer->ambients;
+    if (!moving) WIDE_LOOP for (int k = 0; k < padded; k++) {
+            w->sum_r[k] = still.x * p->color_r[k];
+            w->sum_g[k] = still.y * p->color_g[k];
+            w->sum_b[k] = still.z * p->color_b[k];
+        }
+    else
+        WIDE_LOOP for (int k = 0; k < padded; k++) {
+            const real3 *a = &moving[moment[k]], *b = a + 1;
+            real t = between[k];
+            w->sum_r[k] = (a->x * (1 - t) + b->x * t) * p->color_r[k];
+            w->sum_g[k] = (a->y * (1 - t) + b->y * t) * p->color_g[k];
+            w->sum_b[k] = (a->z * (1 - t) + b->z * t) * p->color_b[k];
+        }
+}
+
+/* Sums up the light at the points; returns how many shadow rays were traced. */
+static int light_points(work *restrict w, const zt_tracer *tracer, const zt_box *around,
+                        const zt_rays *given, int32_t depth) {
+    const zt_points *restrict p = &w->points;
+    int traced = 0;
+    add_ambient(w, tracer);
+    if (given->wants_path) memset(w->hidden, 0, sizeof w->hidden);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
         zt_bundle bundle = zt_bundle_to(*around, lamp->bounds, p->source);
-        if (!lamp->shadows || !may_meet(&bundle, tracer)) {
-            shine(w, lamp, false);
-            continue;
-        }
-        shine(w, lamp, true);
-        if (!any_wanted(w, p->count)) continue;
+        bool hidden = lamp->shadows && may_meet(&bundle, tracer);
+        shine_any(w, tracer, i, hidden, given, depth);
+        int wanted = hidden ? count_wanted(w, p->count) : 0;
+        if (wanted == 0) continue;
+        traced += wanted;
         occlude(&w->shadow, &bundle, tracer);
         add_lamp(w);
+        if (given->wants_path) note_hidden(w, i);
     }
+    return traced;
 }
 
 static inline void deliver_point(zt_radiance *restrict light, const work *restrict w, int i,
@@ -213,6 +280,20 @@ static inline void deliver_point(zt_radiance *restrict light, const work *restri
     light->r[i] += (float)(w->points.weight[k] * w->sum_r[k]);
     light->g[i] += (float)(w->points.weight[k] * w->sum_g[k]);
     light->b[i] += (float)(w->points.weight[k] * w->sum_b[k]);
+}
+
+/* Lengthens the paths by the points: what each lies on, and what of that and of its light has
+ * edges that can be seen. */
+static void deliver_paths(zt_radiance *restrict light, const work *restrict w,
+                          const zt_tracer *tracer) {
+    const zt_points *restrict p = &w->points;
+    for (int k = 0; k < p->count; k++) {
+        uint32_t inside = w->from.source[k] >= 0 ? (uint32_t)w->from.source[k] & 1 : 0;
+        uint32_t what = (uint32_t)p->primitive[k] << 1 | inside;
+        uint32_t *path = &light->path[p->pixel[k]];
+        *path = zt_sample_mix(*path * 0x9e3779b1u + what + 1) ^ w->hidden[k];
+    }
+    (void)tracer;
 }
 
 static void deliver(zt_radiance *restrict light, const work *restrict w) {
@@ -251,7 +332,7 @@ static void mirror(work *restrict w, const zt_tracer *tracer) {
         mirror_ray(w, k);
     }
     if (all_wanted(w, p->count)) return;
-    if (!any_wanted(w, p->count)) {
+    if (count_wanted(w, p->count) == 0) {
         rays->count = 0;
         return;
     }
@@ -284,20 +365,25 @@ static zt_bundle bundle_around(const work *w, zt_box origins, int32_t source) {
 static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
                   void *memory) {
     work *w = memory;
-    memset(light, 0, sizeof *light);
+    memset(light->r, 0, sizeof light->r);
+    memset(light->g, 0, sizeof light->g);
+    memset(light->b, 0, sizeof light->b);
+    if (given->wants_path) memset(light->path, 0, sizeof light->path);
     begin(w, given);
     if (tracer->moves) begin_moments(&w->from, tracer, given->time, given->count);
     zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     w->points.source = -1;
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
         zt_bundle bundle = bundle_around(w, around, w->points.source);
+        *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
         intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
         keep_hits(w, tracer);
         if (w->rays.count == 0) return;
         find_points(&w->points, &w->rays, tracer);
         around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
-        light_points(w, tracer, &around);
+        light->counts.shadow += light_points(w, tracer, &around, given, depth);
         deliver(light, w);
+        if (given->wants_path) deliver_paths(light, w, tracer);
         if (depth >= tracer->reflection_depth) return;
         mirror(w, tracer);
     }
@@ -306,19 +392,22 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
 /* ---- probes ---------------------------------------------------------------------------------
  */
 
-static void begin_probes(work *w, const zt_tracer *tracer, const zt_probe *probes, int count) {
-    zt_rays given = {.count = count};
+static void begin_probes(work *w, zt_rays *given, const zt_tracer *tracer,
+                         const zt_probe *probes, int count) {
+    *given = (zt_rays){.count = count};
     for (int i = 0; i < count; i++) {
-        given.ox[i] = probes[i].origin.x;
-        given.oy[i] = probes[i].origin.y;
-        given.oz[i] = probes[i].origin.z;
-        given.dx[i] = probes[i].direction.x;
-        given.dy[i] = probes[i].direction.y;
-        given.dz[i] = probes[i].direction.z;
+        given->ox[i] = probes[i].origin.x;
+        given->oy[i] = probes[i].origin.y;
+        given->oz[i] = probes[i].origin.z;
+        given->dx[i] = probes[i].direction.x;
+        given->dy[i] = probes[i].direction.y;
+        given->dz[i] = probes[i].direction.z;
+        given->time[i] = (float)probes[i].time;
+        given->key[i] = probes[i].key;
+        given->sample[i] = probes[i].sample;
     }
-    for (int i = 0; i < count; i++) given.time[i] = (float)probes[i].time;
-    begin(w, &given);
-    if (tracer->moves) begin_moments(&w->from, tracer, given.time, count);
+    begin(w, given);
+    if (tracer->moves) begin_moments(&w->from, tracer, given->time, count);
     for (int i = 0; i < count; i++) w->from.source[i] = probes[i].source;
 }
 
@@ -340,23 +429,35 @@ static void tell_hits(zt_probe *probes, const work *w, const zt_tracer *tracer) 
     }
 }
 
-static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer) {
+static void tell_lamp(zt_probe *probes, const work *w, const zt_lamp *lamp) {
+    const zt_batch *shadow = &w->shadow;
+    for (int k = 0; k < w->points.count; k++) {
+        zt_probe *probe = &probes[w->points.pixel[k]];
+        bool open = w->wanted[k] && shadow->hit[k] < 0;
+        probe->lit |= (uint64_t)open << (lamp->light & 63);
+        if (!probe->lamp_points) continue;
+        vec3 from = at(w->from.x, w->from.y, w->from.z, k),
+             way = at(shadow->dx, shadow->dy, shadow->dz, k);
+        probe->lamp_points[lamp->light] = vec3_add(from, vec3_scale(way, (double)shadow->t[k]));
+    }
+}
+
+static void probe_lamps(zt_probe *probes, work *w, const zt_tracer *tracer,
+                        const zt_rays *given) {
     zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
         zt_bundle bundle = zt_bundle_to(around, lamp->bounds, w->points.source);
-        shine(w, lamp, true);
+        shine_any(w, tracer, i, true, given, probes->depth);
         if (lamp->shadows) occlude(&w->shadow, &bundle, tracer);
-        for (int k = 0; k < w->points.count; k++) {
-            bool open = w->wanted[k] && w->shadow.hit[k] < 0;
-            probes[w->points.pixel[k]].lit |= (uint64_t)open << (lamp->light & 63);
-        }
+        tell_lamp(probes, w, lamp);
     }
 }
 
 static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *memory) {
     work *w = memory;
-    begin_probes(w, tracer, probes, count);
+    zt_rays given;
+    begin_probes(w, &given, tracer, probes, count);
     for (int i = 0; i < count; i++) {
         probes[i].object = probes[i].part = -1;
         probes[i].lit = 0;
@@ -367,7 +468,7 @@ static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *me
     if (w->rays.count == 0) return;
     find_points(&w->points, &w->rays, tracer);
     tell_hits(probes, w, tracer);
-    probe_lamps(probes, w, tracer);
+    probe_lamps(probes, w, tracer, &given);
     for (int k = 0; k < w->points.count; k++) {
         mirror_ray(w, k);
         probes[w->points.pixel[k]].mirror_direction = at(w->rays.dx, w->rays.dy, w->rays.dz, k);

@@ -48,7 +48,8 @@ typedef struct zt_radiance {
     alignas(64) float g[ZT_BATCH];
     alignas(64) float b[ZT_BATCH];
     /* Of what the ray saw, where asked for: the same for two rays where they and their mirrored
-     * rays met the same things, of the same cells of patterns, lit by the same lamps. */
+     * rays met the same things, of those with edges the same faces and of patterns the same
+     * cells, and the same lamps are hidden from there. */
     alignas(64) uint32_t path[ZT_BATCH];
     zt_ray_counts counts; /* added to */
 } zt_radiance;
@@ -59,14 +60,20 @@ typedef struct zt_probe {
     vec3 origin, direction; /* of any length but zero */
     double time;            /* a fraction of the shutter's opening */
     int32_t source;
+    /* As in zt_rays, and how many mirrors came before (for all that are asked at once as for
+     * the first): which places of lamps with a size are asked about. */
+    uint32_t key, sample;
+    int32_t depth;
+    vec3 *lamp_points; /* NULL, or room for one for each light of the scene */
     /* The answer. `object` is an index in the scene, or -1 where nothing is hit: then the rest
      * says nothing. */
     int32_t object;
     int32_t part;       /* of a mesh: which triangle, else -1 */
     double distance;    /* in the unit of space */
     vec3 point, normal; /* the normal is unit and faces the ray's origin */
-    uint64_t lit;       /* bit i: nothing hides the scene's light number i (a point light, < 64,
-                           before which the surface faces) */
+    uint64_t lit;       /* bit i: nothing hides the scene's light number i (< 64, not an ambient
+                           one; the surface faces it) */
+    /* lamp_points[i]: where on that light was looked, where the surface faces it. */
     vec3 mirror_origin, mirror_direction; /* how the mirrored ray would go on */
     int32_t mirror_source;
 } zt_probe;

@@ -44,7 +44,7 @@ typedef struct zt_lamp_pose {
     real3 power;    /* color * intensity */
     real3 x, y, z;  /* the axes of disks and rectangles: unit; they shine along -z */
     real a, b; /* half as long as it is along x and along y; a: the radius of what is round */
-    bool shadows;
+    int32_t shadows; /* whether there are any */
 } zt_lamp_pose;
 
 typedef struct zt_lamp {
