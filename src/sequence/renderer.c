@@ -111,6 +111,7 @@ zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
     ZT_TRY(zt_render(image, &count, &t.job, r->work, r->pool));
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = count.left_out;
+    r->cost.rays = count.rays;
     if (count.left_out > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",
