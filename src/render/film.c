@@ -1,5 +1,6 @@
 #include "render/film.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { NO_ESTIMATE = -1, NOT_YET = -2 }; /* of pixels without slots, and with new ones */
@@ -83,11 +84,25 @@ void zt_film_mean(double mean[3], const zt_film_sum *positive, const zt_film_sum
     mean[2] = count ? b / count : 0;
 }
 
-float zt_film_estimate(const double a[3], int32_t a_count, const double b[3], int32_t b_count) {
-    if (a_count == 0 || b_count == 0) return 0;
-    double r = a[0] - b[0], g = a[1] - b[1], blue = a[2] - b[2], both = a_count + b_count;
-    double share = (double)a_count * b_count / (both * both);
-    return (float)((r * r + g * g + blue * blue) / 3 * share);
+float zt_film_estimate(const zt_film_sum positive[2], const zt_film_sum negative[2]) {
+    double mean[2][3], r = 0, g = 0, b = 0, square = 0, count[2];
+    for (int i = 0; i < 2; i++) {
+        const zt_film_sum *p = &positive[i], *n = &negative[i];
+        zt_film_mean(mean[i], p, n);
+        r += p->r + n->r;
+        g += p->g + n->g;
+        b += p->b + n->b;
+        square += p->square + n->square;
+        count[i] = p->taken + n->taken;
+    }
+    double all = count[0] + count[1], apart = 0;
+    if (count[0] == 0 || count[1] == 0) return 0;
+    for (int k = 0; k < 3; k++) apart += (mean[0][k] - mean[1][k]) * (mean[0][k] - mean[1][k]);
+    apart *= count[0] * count[1] / (all * all);
+    double spread = square - (r * r + g * g + b * b) / all; /* all - 1 times the variance */
+    if (spread < 1e-12 * square) spread = 0;                /* roundings */
+    double left = spread / ((all - 1) * all * sqrt(all));
+    return (float)((apart > left ? apart : left) / 3);
 }
 
 float zt_film_error(const zt_film *film, int32_t column, int32_t row) {

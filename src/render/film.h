@@ -15,6 +15,7 @@
  * of equal samples adds up to exactly so many times one of them. */
 typedef struct zt_film_sum {
     double r, g, b;
+    double square; /* the sum of r^2 + g^2 + b^2 */
     int32_t taken;
 } zt_film_sum;
 
@@ -48,6 +49,7 @@ typedef struct zt_film_sums {
         alignas(64) double r[ZT_BATCH];
         alignas(64) double g[ZT_BATCH];
         alignas(64) double b[ZT_BATCH];
+        alignas(64) double square[ZT_BATCH];
         alignas(64) int32_t taken[ZT_BATCH];
     } positive[2], negative[2];
 } zt_film_sums;
@@ -69,8 +71,12 @@ void zt_film_add(zt_film *film, int32_t column, int32_t row);
  * alike. */
 void zt_film_mean(double mean[3], const zt_film_sum *positive, const zt_film_sum *negative);
 
-/* The squared standard error of the mean of two means, of independent samples. */
-float zt_film_estimate(const double a[3], int32_t a_count, const double b[3], int32_t b_count);
+/* The squared standard error of the mean of all samples of two independent sets, on average of
+ * red, green and blue: from the difference of their means; but no less than what the points of
+ * samples, which are well spread, leave of a step's variance: a share of n^(-3/2) for n
+ * samples. Halves that are both well spread often agree on a step through the pixel, and both
+ * be wrong. */
+float zt_film_estimate(const zt_film_sum positive[2], const zt_film_sum negative[2]);
 
 /* The squared error of a pixel, averaged with its neighbours as far as there are estimates, so
  * that two halves that agree by luck do not count for much. Negative where there is none. */

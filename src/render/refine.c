@@ -25,6 +25,10 @@ typedef struct round_job {
 
 /* Samples ---------------------------------------------------------------------------------- */
 
+static inline double square3(float r, float g, float b) {
+    return (double)r * (double)r + (double)g * (double)g + (double)b * (double)b;
+}
+
 /* Adds a sample of each pixel, from `first` in the batch on, to the sums. */
 ZT_CLONES static int add_samples(struct zt_film_half *restrict sum,
                                  const zt_radiance *restrict light, int first, int count) {
@@ -35,6 +39,7 @@ ZT_CLONES static int add_samples(struct zt_film_half *restrict sum,
         sum->r[i] += finite ? (double)r : 0;
         sum->g[i] += finite ? (double)g : 0;
         sum->b[i] += finite ? (double)b : 0;
+        sum->square[i] += finite ? square3(r, g, b) : 0;
         sum->taken[i] += finite;
         left_out += !finite;
     }
@@ -52,6 +57,7 @@ static int take_negative(struct zt_film_half *sum, zt_radiance *light, const flo
         sum->r[i] += (double)r;
         sum->g[i] += (double)g;
         sum->b[i] += (double)b;
+        sum->square[i] += square3(r, g, b);
         sum->taken[i]++;
         light->r[first + i] = NAN;
         moved++;
@@ -107,32 +113,29 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
 }
 
 static zt_film_sum sum_at(const struct zt_film_half *half, int i) {
-    return (zt_film_sum){half->r[i], half->g[i], half->b[i], half->taken[i]};
+    return (zt_film_sum){half->r[i], half->g[i], half->b[i], half->square[i], half->taken[i]};
 }
 
 static zt_film_sum both(zt_film_sum a, zt_film_sum b) {
-    return (zt_film_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.taken + b.taken};
+    return (zt_film_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.square + b.square,
+                         a.taken + b.taken};
 }
 
 /* What a slot has taken in the round becomes its own, and says how far off it is. */
 static void finish_slot(zt_film *film, int32_t index, const round_job *j,
                         const zt_film_sums *sums, int i) {
     zt_slot *slot = &film->slots[index];
-    zt_film_sum none = {0}, *negative = j->is_signed ? &film->negative[index] : NULL;
-    zt_film_sum before = both(slot->sum, sum_at(&sums->positive[0], i));
-    zt_film_sum fresh = sum_at(&sums->positive[1], i), before_negative = none,
-                fresh_negative = none;
-    if (negative) {
-        before_negative = both(*negative, sum_at(&sums->negative[0], i));
-        fresh_negative = sum_at(&sums->negative[1], i);
-        *negative = both(before_negative, fresh_negative);
+    zt_film_sum positive[2] = {both(slot->sum, sum_at(&sums->positive[0], i)),
+                               sum_at(&sums->positive[1], i)};
+    zt_film_sum none = {0}, negative[2] = {none, none};
+    if (j->is_signed) {
+        negative[0] = both(film->negative[index], sum_at(&sums->negative[0], i));
+        negative[1] = sum_at(&sums->negative[1], i);
+        film->negative[index] = both(negative[0], negative[1]);
     }
-    double a[3], b[3];
-    zt_film_mean(a, &before, &before_negative);
-    zt_film_mean(b, &fresh, &fresh_negative);
-    film->error[zt_film_pixel(film, slot->column, slot->row)] = zt_film_estimate(
-        a, before.taken + before_negative.taken, b, fresh.taken + fresh_negative.taken);
-    slot->sum = both(before, fresh);
+    film->error[zt_film_pixel(film, slot->column, slot->row)] =
+        zt_film_estimate(positive, negative);
+    slot->sum = both(positive[0], positive[1]);
     slot->asked += j->more;
 }
 
