@@ -163,7 +163,7 @@ static void unknown_endings(void **state) {
     assert_refused("u/a.####.pgn", "did you mean \".png\"?");
     assert_refused("u/a.hsah", "did you mean \".hash\"?");
     assert_refused("u.png/film",
-                   "a movie .mp4; images .png .exr .tif .tiff .jpg .jpeg .webp .hdr .dpx; "
+                   "a movie .mp4 .mov .mkv .webm .gif .apng; images .png .exr .tif .tiff .jpg .jpeg .webp .hdr .dpx; "
                    "checksums .hash");
     assert_refused("u/%s%n", "no output is named u/%s%n");
     assert_refused("", "no output is named");

@@ -1,10 +1,12 @@
 #include "encode/aside.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/diag.h"
@@ -64,6 +66,24 @@ zt_status zt_aside_keep(zt_aside *aside, zt_listener listener) {
     }
     forget(aside);
     return status;
+}
+
+zt_status zt_aside_room(const zt_aside *aside, double bytes, zt_listener listener) {
+    struct statvfs disk;
+    if (statvfs(aside->path, &disk) != 0) return refuse(aside->path, strerror(errno), listener);
+    double room = (double)disk.f_bavail * (double)disk.f_frsize, gigabyte = 1e9;
+    if (room >= bytes) return ZT_OK;
+    bool hopeless = room < bytes / 4;
+    zt_tell(listener, hopeless ? ZT_ERROR : ZT_WARNING,
+            "%s %s: about %.3g GB, and the disk has room for %.3g GB",
+            hopeless ? "cannot write" : "there may be no room for", aside->target,
+            bytes / gigabyte, room / gigabyte);
+    return hopeless ? ZT_EFILE : ZT_OK;
+}
+
+void zt_aside_leave(zt_aside *aside, zt_listener listener) {
+    zt_tell(listener, ZT_NOTE, "what was written is kept as %s", aside->path);
+    forget(aside);
 }
 
 void zt_aside_drop(zt_aside *aside) {

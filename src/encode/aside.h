@@ -20,6 +20,13 @@ zt_status zt_aside_open(zt_aside *aside, const char *target, zt_listener listene
  */
 zt_status zt_aside_keep(zt_aside *aside, zt_listener listener);
 
+/* Asks for room on the disk for `bytes`, at a guess. ZT_EFILE, told, where there is not even a
+ * quarter of it; where there is less, a warning. */
+zt_status zt_aside_room(const zt_aside *aside, double bytes, zt_listener listener);
+
+/* Forgets about the file, which stays under the name that it has; tells that as a note. */
+void zt_aside_leave(zt_aside *aside, zt_listener listener);
+
 /* Removes the file, if one is under way. */
 void zt_aside_drop(zt_aside *aside);
 

@@ -57,15 +57,28 @@ static zt_status refuse_target(const char *target, zt_listener listener) {
     return ZT_EUNSUPPORTED;
 }
 
+/* Options of the film, which all outputs know; those that cannot hold such a thing leave it
+ * out.
+ */
+static const char *const of_film[] = {"title", "comment", "audio", NULL};
+
+/* Whether it is one of the names; `nearest` sees the others. */
+static bool is_known(const char *name, const char *const *names, zt_nearest *nearest) {
+    for (; *names; names++) {
+        if (zt_text_equal(*names, name)) return true;
+        zt_nearest_try(nearest, *names);
+    }
+    return false;
+}
+
 /* Refuses the first option that the sink does not know. */
 static zt_status check_options(const char *target, const zt_sink *sink,
                                const zt_output_option *options, zt_listener listener) {
     for (; options && options->name; options++) {
         zt_nearest nearest = zt_nearest_to(options->name);
-        const char *const *known = sink->options;
-        while (*known && !zt_text_equal(*known, options->name))
-            zt_nearest_try(&nearest, *known++);
-        if (*known) continue;
+        if (is_known(options->name, sink->options, &nearest) ||
+            is_known(options->name, of_film, &nearest))
+            continue;
         zt_tell(listener, ZT_ERROR, "cannot write %s: there is no option \"%s\" for %s%s%s%s",
                 target, options->name, sink->what, nearest.best ? "; did you mean \"" : "",
                 nearest.best ? nearest.best : "", nearest.best ? "\"?" : "");

@@ -1,256 +1,143 @@
-/* A movie: H.264 in MP4. The one door to FFmpeg, a module.
- *
- * Same bits: x264 gives the same stream for the same number of threads, so that number is fixed
- * here and does not follow the machine's. */
+/* A movie: images are converted, encoded and, when the file is complete, held against what it
+ * became; only then it gets its name. */
+#include "encode/video.h"
+
 #include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
 
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/opt.h>
-#include <libswscale/swscale.h>
-
-#include "base/diag.h"
 #include "base/text.h"
 #include "encode/aside.h"
-#include "encode/video.h"
-#include "image/develop.h"
-
-static const char quality[] = "18" /* CRF */;
-/* Four threads take a tenth more of the cores than one does. */
-enum { THREAD_COUNT = 4, GOP_S = 2, GOP_FRAMES_MAX = 250, TIMESCALE_MIN = 10000 };
+#include "encode/video_check.h"
+#include "encode/video_palette.h"
+#include "encode/video_pixels.h"
+#include "encode/video_reader.h"
+#include "encode/video_writer.h"
 
 typedef struct movie {
-    AVFormatContext *container;
-    AVCodecContext *encoder;
-    AVStream *stream; /* the container's */
-    struct SwsContext *converter;
-    AVFrame *rgb, *yuv; /* one picture developed, and converted */
-    AVPacket *packet;
-    int64_t frame_count;
-    zt_view view;
+    zt_video_ear ear;
+    zt_video_choice choice;
+    zt_output_option *options; /* a copy, which the choice points into */
+    zt_output_format format;
+    zt_video_pixels *pixels;
     zt_aside aside;
-    zt_listener listener;
+    zt_video_writer writer; /* of the film; of a GIF only when its palette is known */
+    int64_t frame_count;
+    zt_video_sample samples[ZT_VIDEO_SAMPLE_COUNT];
+    /* Where the palette is made from the film: that, and the pictures until then. */
+    const zt_video_palette_door *door;
+    void *palette;
+    zt_aside store_aside;
+    zt_video_ear store_ear;
+    zt_video_choice store_choice;
+    zt_video_writer store;
 } movie;
 
-/* What libav last complained of in this thread. It would print it otherwise; there is one
- * callback for the whole process. */
-static thread_local char complaint[256];
-
-static void hear_libav(void *context, int level, const char *format, va_list arguments) {
-    (void)context;
-    if (level > AV_LOG_ERROR) return;
-    vsnprintf(complaint, sizeof complaint, format, arguments);
-    complaint[strcspn(complaint, "\r\n")] = '\0';
-}
-
-static once_flag listening_once = ONCE_FLAG_INIT;
-static void listen_to_libav(void) { av_log_set_callback(hear_libav); }
-
-static zt_status refuse(const movie *m, int error) {
-    if (error == AVERROR(ENOMEM)) return ZT_EMEMORY;
-    zt_tell(m->listener, ZT_ERROR, "cannot write %s: %s%s%s", m->aside.target,
-            av_err2str(error), *complaint ? ": " : "", complaint);
-    return ZT_EFILE;
-}
-
-/* Hands a failure of libav up as a status, after telling it. */
-#define AV_TRY(m, call)                                                                        \
-    do {                                                                                       \
-        int av_try_error = (call);                                                             \
-        if (av_try_error < 0) return refuse(m, av_try_error);                                  \
-    } while (0)
-
-static int even(int side) { return side < 2 ? 2 : side / 2 * 2; }
-
-/* yuv420p has one colour for each 2x2 pixels. */
-static zt_status check_size(const char *target, const zt_output_format *format,
-                            zt_listener listener) {
-    int width = even(format->width), height = even(format->height);
-    if (width == format->width && height == format->height) return ZT_OK;
-    zt_tell(listener, ZT_ERROR,
-            "cannot write %s: a movie needs an even width and height, and %dx%d is not; "
-            "%dx%d would be",
-            target, format->width, format->height, width, height);
-    return ZT_EARGUMENT;
-}
-
-/* What the numbers mean, for decoders: BT.709 primaries and matrix, in 16..235 (240), chroma
- * sited left. The transfer tag is BT.709's in both views, although the sRGB view's numbers are
- * sRGB's (tag 13): nearly all players show the numbers of a 709 film as they are, which on an
- * sRGB display is right, while 13 is so rare in films that some programs take it for unknown.
- * The few that take 709 at its word show the shadows a little lighter, as of all films made on
- * such a display. */
-static void tag_frame(AVFrame *frame) {
-    frame->color_primaries = AVCOL_PRI_BT709;
-    frame->color_trc = AVCOL_TRC_BT709;
-    frame->colorspace = AVCOL_SPC_BT709;
-    frame->color_range = AVCOL_RANGE_MPEG;
-    frame->chroma_location = AVCHROMA_LOC_LEFT;
-}
-
-static void tag_encoder(AVCodecContext *encoder, const AVFrame *frame) {
-    encoder->color_primaries = frame->color_primaries;
-    encoder->color_trc = frame->color_trc;
-    encoder->colorspace = frame->colorspace;
-    encoder->color_range = frame->color_range;
-    encoder->chroma_sample_location = frame->chroma_location;
-}
-
-/* The encoder's presets, from the fastest on. */
-static const char *const presets[] = {"ultrafast", "superfast", "veryfast", "faster",
-                                      "fast",      "medium",    "slow",     "slower",
-                                      "veryslow",  "placebo",   NULL};
-
-static zt_status check_preset(const char *target, const char *preset, zt_listener listener) {
-    char list[160] = "";
-    size_t length = 0;
-    for (const char *const *known = presets; *known; known++) {
-        if (zt_text_equal(*known, preset)) return ZT_OK;
-        length += (size_t)snprintf(list + length, sizeof list - length, " %s", *known);
-    }
-    zt_tell(listener, ZT_ERROR, "cannot write %s: there is no preset \"%s\"; there are%s",
-            target, preset, list);
-    return ZT_EARGUMENT;
-}
-
-static zt_status make_frame(movie *m, AVFrame **frame, const zt_output_format *format,
-                            enum AVPixelFormat pixels) {
-    *frame = av_frame_alloc();
-    if (!*frame) return ZT_EMEMORY;
-    (*frame)->width = format->width;
-    (*frame)->height = format->height;
-    (*frame)->format = pixels;
-    AV_TRY(m, av_frame_get_buffer(*frame, 0));
-    return ZT_OK;
-}
-
-/* From full-range R'G'B' to BT.709 limited range, rounded and with chroma from all pixels. */
-static zt_status make_converter(movie *m) {
-    m->converter = sws_alloc_context();
-    if (!m->converter) return ZT_EMEMORY;
-    const struct {
-        const char *name;
-        int64_t value;
-    } options[] = {
-        {"srcw", m->rgb->width},
-        {"srch", m->rgb->height},
-        {"src_format", m->rgb->format},
-        {"src_range", 1},
-        {"dstw", m->yuv->width},
-        {"dsth", m->yuv->height},
-        {"dst_format", m->yuv->format},
-        {"dst_range", 0},
-        {"dst_h_chr_pos", 0},   /* left in its pair of pixels, */
-        {"dst_v_chr_pos", 128}, /* in the middle between its rows */
-        {"sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP | SWS_BITEXACT},
-    };
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-        AV_TRY(m, av_opt_set_int(m->converter, options[i].name, options[i].value, 0));
-    AV_TRY(m, sws_init_context(m->converter, NULL, NULL));
-    const int *bt709 = sws_getCoefficients(SWS_CS_ITU709);
-    AV_TRY(m, sws_setColorspaceDetails(m->converter, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
-    return ZT_OK;
-}
-
-/* A key picture every two seconds, and no picture refers beyond it: films can be cut there. */
-static int gop_frames(AVRational rate) {
-    int64_t frames = (int64_t)GOP_S * rate.num / rate.den;
-    return frames < 1 ? 1 : frames > GOP_FRAMES_MAX ? GOP_FRAMES_MAX : (int)frames;
-}
-
-static zt_status open_encoder(movie *m, AVRational rate, const zt_video_settings *settings) {
-    const AVCodec *codec = avcodec_find_encoder_by_name("libx264");
-    if (!codec) {
-        zt_tell(m->listener, ZT_ERROR, "cannot write %s: this FFmpeg has no libx264",
-                m->aside.target);
-        return ZT_EUNSUPPORTED;
-    }
-    AVCodecContext *encoder = m->encoder = avcodec_alloc_context3(codec);
-    if (!encoder) return ZT_EMEMORY;
-    encoder->width = m->yuv->width;
-    encoder->height = m->yuv->height;
-    encoder->pix_fmt = m->yuv->format;
-    encoder->sample_aspect_ratio = (AVRational){1, 1};
-    encoder->framerate = rate;
-    encoder->time_base = av_inv_q(rate);
-    encoder->gop_size = gop_frames(rate);
-    encoder->thread_count = THREAD_COUNT;
-    encoder->flags = (int)(AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_GLOBAL_HEADER);
-    tag_encoder(encoder, m->yuv);
-    AV_TRY(m, av_opt_set(encoder->priv_data, "preset", settings->preset, 0));
-    AV_TRY(m, av_opt_set(encoder->priv_data, "crf", quality, 0));
-    AV_TRY(m, av_opt_set(encoder->priv_data, "x264-params", "force-cfr=1", 0));
-    AV_TRY(m, avcodec_open2(encoder, codec, NULL));
-    return ZT_OK;
-}
-
-/* Writes the head of the file. The movie counts in the same fractions of a second as its
- * pictures: with FFmpeg's milliseconds the film would end up to one too late. */
-static zt_status open_container(movie *m, AVRational rate) {
-    char *url = zt_text_print("file:%s", m->aside.path); /* never taken for a protocol */
-    if (!url) return ZT_EMEMORY;
-    int error = avformat_alloc_output_context2(&m->container, NULL, "mp4", url);
-    if (error >= 0) error = avio_open(&m->container->pb, url, AVIO_FLAG_WRITE);
-    free(url);
-    AV_TRY(m, error);
-    AVStream *stream = m->stream = avformat_new_stream(m->container, NULL);
-    if (!stream) return ZT_EMEMORY;
-    AV_TRY(m, avcodec_parameters_from_context(stream->codecpar, m->encoder));
-    stream->time_base = m->encoder->time_base;
-    stream->avg_frame_rate = stream->r_frame_rate = rate;
-    int64_t timescale = rate.num;
-    while (timescale < TIMESCALE_MIN) timescale *= 2;
-    AVDictionary *options = NULL;
-    error = av_dict_set(&options, "movflags", "+faststart", 0);
-    if (error >= 0) error = av_dict_set_int(&options, "video_track_timescale", timescale, 0);
-    if (error >= 0) error = av_dict_set_int(&options, "movie_timescale", timescale, 0);
-    if (error >= 0) error = avformat_write_header(m->container, &options);
-    av_dict_free(&options);
-    AV_TRY(m, error);
-    return ZT_OK;
-}
-
 static void movie_free(movie *m) {
-    if (m->container) avio_closep(&m->container->pb);
-    avformat_free_context(m->container);
-    avcodec_free_context(&m->encoder);
-    sws_freeContext(m->converter);
-    av_frame_free(&m->rgb);
-    av_frame_free(&m->yuv);
-    av_packet_free(&m->packet);
+    zt_video_writer_close(&m->writer);
+    zt_video_writer_close(&m->store);
+    zt_video_pixels_close(&m->pixels);
+    if (m->door) m->door->close(m->palette);
+    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) av_frame_free(&m->samples[i].frame);
     zt_aside_drop(&m->aside);
+    zt_aside_drop(&m->store_aside);
+    for (zt_output_option *o = m->options; o && o->name; o++) {
+        free((char *)o->name);
+        free((char *)o->value);
+    }
+    free(m->options);
+    free((char *)m->ear.target);
+    free((char *)m->store_ear.target);
     free(m);
 }
 
-static zt_status open_all(movie *m, const char *target, const zt_output_format *format,
-                          const zt_video_settings *settings) {
-    AVRational rate;
-    av_reduce(&rate.num, &rate.den, format->rate.num, format->rate.den, INT32_MAX);
-    ZT_TRY(zt_aside_open(&m->aside, target, m->listener));
-    ZT_TRY(make_frame(m, &m->rgb, format, AV_PIX_FMT_RGB24));
-    ZT_TRY(make_frame(m, &m->yuv, format, AV_PIX_FMT_YUV420P));
-    tag_frame(m->yuv);
-    ZT_TRY(make_converter(m));
-    ZT_TRY(open_encoder(m, rate, settings));
-    ZT_TRY(open_container(m, rate));
-    m->packet = av_packet_alloc();
-    return m->packet ? ZT_OK : ZT_EMEMORY;
+/* Options are the caller's only while a movie is opened, and some are asked for later. */
+static zt_status copy_options(movie *m, const zt_output_option *options) {
+    size_t count = 0;
+    while (options && options[count].name) count++;
+    m->options = calloc(count + 1, sizeof *m->options);
+    if (!m->options) return ZT_EMEMORY;
+    for (size_t i = 0; i < count; i++) {
+        m->options[i].value = strdup(options[i].value);
+        m->options[i].name = strdup(options[i].name);
+        if (!m->options[i].name || !m->options[i].value) return ZT_EMEMORY;
+    }
+    return ZT_OK;
+}
+
+/* A frame of the kind that will come, for its tags. */
+static zt_status make_first(movie *m, AVFrame **first) {
+    zt_image *image = NULL;
+    ZT_TRY(zt_image_create(&image, m->format.width, m->format.height));
+    zt_status status = zt_video_pixels_convert(first, m->pixels, image, &m->ear);
+    zt_image_free(&image);
+    return status;
+}
+
+/* Pictures wait in FFV1, which loses nothing, until the palette is known. */
+static zt_status open_store(movie *m, const AVFrame *first) {
+    static const zt_output_option options[][3] = {
+        {{"codec", "ffv1"}, {"pixel-format", "bgr0"}, {NULL, NULL}},
+        {{"codec", "ffv1"}, {"pixel-format", "bgra"}, {NULL, NULL}}};
+    m->store_ear = m->ear;
+    m->store_ear.target = zt_text_print("%s.frames.mkv", m->ear.target);
+    if (!m->store_ear.target) return ZT_EMEMORY;
+    m->door = zt_module_door("video_palette", "a GIF", m->ear.listener);
+    if (!m->door) return ZT_EUNSUPPORTED;
+    AV_TRY(&m->ear, m->door->open(&m->palette, first));
+    ZT_TRY(zt_video_choose(&m->store_choice, &m->format,
+                           options[first->format == AV_PIX_FMT_BGRA], &m->store_ear));
+    ZT_TRY(zt_aside_open(&m->store_aside, m->store_ear.target, m->ear.listener));
+    return zt_video_writer_open(&m->store, m->store_aside.path, &m->store_choice, &m->format,
+                                first, &m->store_ear);
+}
+
+/* What will hold all frames, at a guess. */
+static zt_status check_room(const movie *m) {
+    double pixels = (double)m->format.width * m->format.height *
+                    (double)(m->format.frame_count > 0 ? m->format.frame_count : 1);
+    double bits = m->choice.codec->bits_a_pixel * pixels;
+    if (m->choice.bitrate)
+        bits = (double)m->choice.bitrate * (double)m->format.frame_count * m->format.rate.den /
+               m->format.rate.num;
+    if (m->choice.codec->palette) bits += 8 * pixels;
+    return zt_aside_room(&m->aside, bits / 8, m->ear.listener);
+}
+
+static zt_status open_all(movie *m, const char *target, const zt_output_option *options) {
+    m->ear.target = strdup(target);
+    if (!m->ear.target) return ZT_EMEMORY;
+    ZT_TRY(copy_options(m, options));
+    ZT_TRY(zt_video_choose(&m->choice, &m->format, m->options, &m->ear));
+    const zt_container *kind = m->choice.container;
+    if (zt_wish_value(options, "audio") && !kind->sound)
+        zt_tell(m->ear.listener, ZT_WARNING, "%s has no sound: %s files hold none", target,
+                kind->ending);
+    ZT_TRY(zt_aside_open(&m->aside, target, m->ear.listener));
+    ZT_TRY(check_room(m));
+    /* What a palette is made from is R'G'B'. */
+    enum AVPixelFormat pixels =
+        m->choice.pixels == AV_PIX_FMT_PAL8 ? AV_PIX_FMT_BGR0 : m->choice.pixels;
+    ZT_TRY(zt_video_pixels_open(&m->pixels, &m->format, pixels, &m->ear));
+    AVFrame *first = NULL;
+    ZT_TRY(make_first(m, &first));
+    zt_status status =
+        zt_video_writer_open(&m->writer, m->aside.path, &m->choice, &m->format, first, &m->ear);
+    if (status == ZT_OK && m->choice.codec->palette) status = open_store(m, first);
+    av_frame_free(&first);
+    return status;
 }
 
 static zt_status open_movie(void **state, const char *target, const zt_output_format *format,
-                            const zt_video_settings *settings, zt_listener listener) {
-    ZT_TRY(check_size(target, format, listener));
-    ZT_TRY(check_preset(target, settings->preset, listener));
-    call_once(&listening_once, listen_to_libav);
-    *complaint = '\0';
+                            const zt_output_option *options, zt_listener listener) {
+    zt_libav_listen();
     movie *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
-    m->view = format->view;
-    m->listener = listener;
-    zt_status status = open_all(m, target, format, settings);
+    m->format = *format;
+    m->ear.listener = listener;
+    zt_status status = open_all(m, target, options);
     if (status == ZT_OK)
         *state = m;
     else
@@ -258,43 +145,97 @@ static zt_status open_movie(void **state, const char *target, const zt_output_fo
     return status;
 }
 
-/* Gives the encoder a picture, or NULL for the end, and writes what it has ready. */
-static zt_status encode(movie *m, const AVFrame *frame) {
-    AV_TRY(m, avcodec_send_frame(m->encoder, frame));
+/* Keeps the first frame, the newest one, and, so that it need not be known how many come, the
+ * newest whose number is a power of two. */
+static zt_status keep_sample(movie *m, const AVFrame *frame, int64_t number) {
+    const bool wanted[ZT_VIDEO_SAMPLE_COUNT] = {
+        number == 0, number > 0 && (number & (number - 1)) == 0, number > 0};
+    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) {
+        if (!wanted[i]) continue;
+        av_frame_free(&m->samples[i].frame);
+        m->samples[i].number = number;
+        m->samples[i].frame = av_frame_clone(frame);
+        if (!m->samples[i].frame) return ZT_EMEMORY;
+    }
+    return ZT_OK;
+}
+
+static zt_status put(movie *m, AVFrame *frame) {
+    ZT_TRY(keep_sample(m, frame, m->frame_count++));
+    if (!m->palette) return zt_video_writer_put(&m->writer, frame, &m->ear);
+    AV_TRY(&m->ear, m->door->count(m->palette, frame));
+    return zt_video_writer_put(&m->store, frame, &m->store_ear);
+}
+
+static zt_status write_movie(void *state, const zt_image *image, int64_t frame_number) {
+    (void)frame_number; /* a movie has no gaps and begins at 0, whatever the numbers */
+    movie *m = state;
+    zt_libav_listen();
+    AVFrame *frame = NULL;
+    ZT_TRY(zt_video_pixels_convert(&frame, m->pixels, image, &m->ear));
+    zt_status status = put(m, frame);
+    av_frame_free(&frame);
+    return status;
+}
+
+static zt_status use_palette(movie *m, zt_video_reader *stored) {
     for (;;) {
-        int error = avcodec_receive_packet(m->encoder, m->packet);
-        if (error == AVERROR(EAGAIN) || error == AVERROR_EOF) return ZT_OK;
-        AV_TRY(m, error);
-        m->packet->stream_index = m->stream->index;
-        m->packet->duration = 1; /* without it the last picture has none */
-        av_packet_rescale_ts(m->packet, m->encoder->time_base, m->stream->time_base);
-        AV_TRY(m, av_interleaved_write_frame(m->container, m->packet));
+        int error = zt_video_reader_next(stored);
+        if (error == AVERROR_EOF) return ZT_OK;
+        AV_TRY(&m->store_ear, error);
+        AVFrame *frame = NULL;
+        AV_TRY(&m->ear, m->door->use(&frame, m->palette, stored->frame));
+        zt_status status = zt_video_writer_put(&m->writer, frame, &m->ear);
+        av_frame_free(&frame);
+        ZT_TRY(status);
     }
 }
 
-static zt_status write_movie(void *state, const zt_image *image, int64_t frame) {
-    (void)frame; /* a movie has no gaps and begins at 0, whatever the numbers */
-    movie *m = state;
-    *complaint = '\0';
-    zt_develop_rgb8(m->rgb->data[0], (size_t)m->rgb->linesize[0], image, m->view, 0,
-                    image->height);
-    AV_TRY(m, av_frame_make_writable(m->yuv)); /* a copy, should the encoder still hold it */
-    const uint8_t *const *rgb = (const uint8_t *const *)m->rgb->data;
-    AV_TRY(m, sws_scale(m->converter, rgb, m->rgb->linesize, 0, image->height, m->yuv->data,
-                        m->yuv->linesize));
-    m->yuv->pts = m->frame_count++;
-    return encode(m, m->yuv);
+/* All pictures are there: now they get their colours. */
+static zt_status encode_stored(movie *m) {
+    ZT_TRY(zt_video_writer_finish(&m->store, &m->store_ear));
+    AV_TRY(&m->ear, m->door->choose(m->palette));
+    zt_video_reader stored;
+    int error = zt_video_reader_open(&stored, m->store_aside.path, NULL);
+    zt_status status =
+        error < 0 ? zt_libav_refuse(&m->store_ear, error) : use_palette(m, &stored);
+    zt_video_reader_close(&stored);
+    return status;
+}
+
+static void tell_checked(const movie *m, double psnr) {
+    char rate[32], quality[48] = "the same to the bit";
+    const zt_rate *r = &m->format.rate;
+    snprintf(rate, sizeof rate, r->den == 1 ? "%d" : "%d/%d", r->num, r->den);
+    if (isfinite(psnr)) snprintf(quality, sizeof quality, "PSNR %.1f dB at least", psnr);
+    zt_tell(m->ear.listener, ZT_NOTE, "%s: %" PRId64 " frame%s, %s, %s fps, checked: %s",
+            m->ear.target, m->frame_count, m->frame_count == 1 ? "" : "s",
+            m->choice.codec->title, rate, quality);
+}
+
+/* A film that fails the check does not get its name, but hours of work are not thrown away. */
+static zt_status check_film(movie *m) {
+    zt_video_expected expected = {.choice = &m->choice,
+                                  .rate = m->format.rate,
+                                  .frame_count = m->frame_count,
+                                  .has_sound = m->writer.sound != NULL};
+    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) expected.samples[i] = m->samples[i];
+    double psnr;
+    zt_status status = zt_video_check(&psnr, m->aside.path, &expected, &m->ear);
+    if (status == ZT_OK) tell_checked(m, psnr);
+    if (status == ZT_EFILE) zt_aside_leave(&m->aside, m->ear.listener);
+    return status;
 }
 
 static zt_status complete(movie *m) {
-    ZT_TRY(encode(m, NULL));
-    AV_TRY(m, av_write_trailer(m->container));
-    AV_TRY(m, avio_closep(&m->container->pb));
-    return zt_aside_keep(&m->aside, m->listener);
+    if (m->palette) ZT_TRY(encode_stored(m));
+    ZT_TRY(zt_video_writer_finish(&m->writer, &m->ear));
+    ZT_TRY(check_film(m));
+    return zt_aside_keep(&m->aside, m->ear.listener);
 }
 
 static zt_status close_movie(void *state, bool keep) {
-    *complaint = '\0';
+    zt_libav_listen();
     zt_status status = keep ? complete(state) : ZT_OK;
     movie_free(state);
     return status;

@@ -1,5 +1,6 @@
 /* The door to FFmpeg, a module that is loaded when a movie is opened (base/module.h): FFmpeg
- * brings some 130 libraries, and what writes no movie does without them. */
+ * brings some 130 libraries, and what writes no movie does without them. The files video*.c are
+ * that door; each says what it does of it. */
 #ifndef ZT_ENCODE_VIDEO_H
 #define ZT_ENCODE_VIDEO_H
 
@@ -9,15 +10,10 @@
 
 #include "base/module.h"
 
-/* How a movie is encoded. */
-typedef struct zt_video_settings {
-    const char *preset; /* of the encoder's: how much time it takes */
-} zt_video_settings;
-
-/* The calls of a sink (encode/sink.h), its options understood. */
+/* The calls of a sink (encode/sink.h). */
 typedef struct zt_video_door {
     zt_status (*open)(void **state, const char *target, const zt_output_format *format,
-                      const zt_video_settings *settings, zt_listener listener);
+                      const zt_output_option *options, zt_listener listener);
     zt_status (*write)(void *state, const zt_image *image, int64_t frame);
     zt_status (*close)(void *state, bool keep);
 } zt_video_door;

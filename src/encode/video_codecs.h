@@ -1,0 +1,80 @@
+/* Which containers and codecs there are, and what a movie's options come to: one table drives
+ * names, refusals, encoders and tags. */
+#ifndef ZT_ENCODE_VIDEO_CODECS_H
+#define ZT_ENCODE_VIDEO_CODECS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <libavcodec/avcodec.h>
+
+#include <zoetrope/output.h>
+
+#include "encode/video_libav.h"
+
+/* A file's kind, chosen by its ending. */
+typedef struct zt_container {
+    const char *ending, *muxer;
+    const char *codec;              /* where none is asked for */
+    const char *sound;              /* the encoder of sound; NULL: it holds none */
+    enum AVCodecID takes_sound[12]; /* that is copied; AV_CODEC_ID_NONE after the last */
+    bool has_boxes;                 /* of ISO/IEC 14496-12: moov goes before mdat */
+    int ticks_a_second;             /* that frames' times are rounded to; 0: exact */
+    int rate_max;                   /* frames a second that players show; 0: any */
+    bool has_delays;                /* from frame to frame, instead of times */
+} zt_container;
+
+/* Something that an encoder is told besides what was asked for. */
+typedef struct zt_codec_setting {
+    const char *name, *value;
+    const char *pixels; /* only with this pixel format; NULL: always */
+} zt_codec_setting;
+
+enum { ZT_CODEC_LIST_MAX = 10 };
+
+/* A codec, by the name of the option. Lists of texts end with NULL. */
+typedef struct zt_codec {
+    const char *name, *title; /* "h264", "H.264" */
+    const char *encoder;      /* as libavcodec calls it */
+    const char *decoder;      /* of alpha, where libavcodec's own leaves it out; else NULL */
+    const char *endings[4];
+    const char *pixels[ZT_CODEC_LIST_MAX]; /* the first one where none is asked for */
+    int width_min, height_min;
+    const char *crf; /* where none is asked for; NULL: there is no such scale */
+    int crf_max;
+    bool has_bitrate;
+    const char *const *presets; /* from the fastest to the slowest; NULL: none */
+    const char *preset_option, *preset;
+    zt_codec_setting settings[7];
+    int thread_count;    /* fixed: what comes out may depend on it */
+    uint32_t tag;        /* in MP4 and MOV; 0: by the muxer */
+    bool lossless;       /* the decoded pixels are those that were sent */
+    bool palette;        /* made from the film */
+    double bits_a_pixel; /* of a usual film */
+} zt_codec;
+
+/* What was chosen, all of it known to exist and to fit together. The texts are the options'. */
+typedef struct zt_video_choice {
+    const zt_container *container;
+    const zt_codec *codec;
+    const AVCodec *encoder;
+    enum AVPixelFormat pixels;
+    const char *crf, *preset; /* NULL: does not apply */
+    int64_t bitrate;          /* bits a second; 0: by crf, or by itself */
+    const zt_output_option *options;
+} zt_video_choice;
+
+/* Understands the options. ZT_EARGUMENT, or ZT_EUNSUPPORTED for what this FFmpeg cannot encode,
+ * after telling what there is instead. */
+zt_status zt_video_choose(zt_video_choice *choice, const zt_output_format *format,
+                          const zt_output_option *options, const zt_video_ear *ear);
+
+/* Puts the choice, with the person's encoder-options, into a context that was allocated for its
+ * encoder and is not yet open. */
+zt_status zt_video_configure(AVCodecContext *encoder, const zt_video_choice *choice,
+                             const zt_video_ear *ear);
+
+/* "H.264 (libx264), yuv420p, crf 18, preset veryfast", for people. */
+void zt_video_describe(char *text, size_t size, const zt_video_choice *choice);
+
+#endif

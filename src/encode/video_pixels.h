@@ -1,0 +1,28 @@
+/* From images of linear light to the frames that an encoder takes, and how far those that come
+ * back are from them. */
+#ifndef ZT_ENCODE_VIDEO_PIXELS_H
+#define ZT_ENCODE_VIDEO_PIXELS_H
+
+#include <libavutil/frame.h>
+
+#include <zoetrope/output.h>
+
+#include "encode/video_libav.h"
+
+typedef struct zt_video_pixels zt_video_pixels;
+
+/* For images of the format's size and frames of `pixels`. */
+zt_status zt_video_pixels_open(zt_video_pixels **converter, const zt_output_format *format,
+                               enum AVPixelFormat pixels, const zt_video_ear *ear);
+void zt_video_pixels_close(zt_video_pixels **converter);
+
+/* A new frame, of the caller to free: developed by the view, converted, tagged. Formats with
+ * alpha get the image's, and colours that are not multiplied by it; others are opaque. */
+zt_status zt_video_pixels_convert(AVFrame **frame, zt_video_pixels *converter,
+                                  const zt_image *image, const zt_video_ear *ear);
+
+/* The peak signal-to-noise ratio over all numbers of all components of `sent`, INFINITY where
+ * they are the same; negative where the frames cannot be compared. */
+double zt_video_psnr(const AVFrame *found, const AVFrame *sent);
+
+#endif
