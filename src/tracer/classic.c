@@ -259,7 +259,6 @@ static int light_points(work *restrict w, const zt_tracer *tracer, const zt_box 
     const zt_points *restrict p = &w->points;
     int traced = 0;
     add_ambient(w, tracer);
-    if (given->wants_path) memset(w->hidden, 0, sizeof w->hidden);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
         zt_bundle bundle = zt_bundle_to(*around, lamp->bounds, p->source);
@@ -282,18 +281,28 @@ static inline void deliver_point(zt_radiance *restrict light, const work *restri
     light->b[i] += (float)(w->points.weight[k] * w->sum_b[k]);
 }
 
+static void begin_paths(work *w) {
+    memset(w->points.face, 0, sizeof w->points.face);
+    memset(w->points.cell, 0, sizeof w->points.cell);
+    memset(w->hidden, 0, sizeof w->hidden);
+}
+
 /* Lengthens the paths by the points: what each lies on, and what of that and of its light has
  * edges that can be seen. */
-static void deliver_paths(zt_radiance *restrict light, const work *restrict w,
-                          const zt_tracer *tracer) {
+static void deliver_paths(zt_radiance *restrict light, work *restrict w) {
     const zt_points *restrict p = &w->points;
-    for (int k = 0; k < p->count; k++) {
-        uint32_t inside = w->from.source[k] >= 0 ? (uint32_t)w->from.source[k] & 1 : 0;
-        uint32_t what = (uint32_t)p->primitive[k] << 1 | inside;
-        uint32_t *path = &light->path[p->pixel[k]];
-        *path = zt_sample_mix(*path * 0x9e3779b1u + what + 1) ^ w->hidden[k];
+    uint32_t *restrict path = w->hidden;
+    int padded = zt_batch_padded(p->count);
+    WIDE_LOOP for (int k = 0; k < padded; k++) {
+        int32_t source = w->from.source[k], inside = source >= 0 ? source & 1 : 0;
+        uint32_t what = (uint32_t)(16 * p->primitive[k] + 2 * p->face[k] + inside) << 1 |
+                        (uint32_t)p->cell[k];
+        path[k] = zt_sample_mix(what + 1) ^ path[k];
     }
-    (void)tracer;
+    for (int k = 0; k < p->count; k++) {
+        uint32_t *whole = &light->path[p->pixel[k]];
+        *whole = zt_sample_mix(*whole + path[k]);
+    }
 }
 
 static void deliver(zt_radiance *restrict light, const work *restrict w) {
@@ -379,11 +388,12 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
         intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
         keep_hits(w, tracer);
         if (w->rays.count == 0) return;
+        if (given->wants_path) begin_paths(w);
         find_points(&w->points, &w->rays, tracer);
         around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
         light->counts.shadow += light_points(w, tracer, &around, given, depth);
         deliver(light, w);
-        if (given->wants_path) deliver_paths(light, w, tracer);
+        if (given->wants_path) deliver_paths(light, w);
         if (depth >= tracer->reflection_depth) return;
         mirror(w, tracer);
     }

@@ -187,7 +187,8 @@ void ZT_KERNEL_NAME(zt_change_patterns)(zt_points *w, const zt_origins *from,
         zt_looks now = looks_at(change->looks, from->moment[k], (double)from->between[k]);
         vec3 p = {(double)from->x[k], (double)from->y[k], (double)from->z[k]};
         vec3 n = {(double)w->nx[k], (double)w->ny[k], (double)w->nz[k]};
-        if (!in_other(&now, change->pattern, p, n)) continue;
+        w->cell[k] = in_other(&now, change->pattern, p, n);
+        if (!w->cell[k]) continue;
         w->color_r[k] = (real)now.other_color.x;
         w->color_g[k] = (real)now.other_color.y;
         w->color_b[k] = (real)now.other_color.z;

@@ -317,6 +317,7 @@ static void weave(zt_points *restrict w, const zt_origins *restrict from,
                    whole(real_dot(rz.x, rz.y, rz.z, px, py, pz) + v->at.z - below * mz);
         bool odd = sum - 2 * whole(sum / 2) != 0;
         bool other = (index >= 0) & odd;
+        w->cell[k] = other;
         w->color_r[k] = other ? v->other.x : w->color_r[k];
         w->color_g[k] = other ? v->other.y : w->color_g[k];
         w->color_b[k] = other ? v->other.z : w->color_b[k];

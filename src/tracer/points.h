@@ -20,6 +20,10 @@ typedef struct zt_points {
     alignas(64) real color_b[ZT_BATCH];
     alignas(64) real reflectivity[ZT_BATCH];
     alignas(64) int32_t closed[ZT_BATCH]; /* as in zt_surface */
+    /* Which of a solid's faces that meet at edges; and whether a pattern's cell is one of the
+     * other color. Set where there are solids, and patterns. */
+    alignas(64) int32_t face[ZT_BATCH];
+    alignas(64) int32_t cell[ZT_BATCH];
     int32_t source; /* the primitive that they all lie on, none of them inside it, or -1 */
     int count;
     bool moved; /* some rays have gone, so that point k may not be that of ray k any more */
