@@ -151,11 +151,60 @@ static void sixteen_bits_are_exact(void **state) {
     zt_image_free(&image);
 }
 
+/* The first float whose 16-bit code is at least this one. */
+static uint32_t deep_step(int code, zt_view view) {
+    uint32_t low = 0, high = 0x3f800000;
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (65535 * reference(from_bits(middle), view) + 0.5L >= code)
+            high = middle;
+        else
+            low = middle;
+    }
+    return high;
+}
+
+/* At the step from each of the 65536 codes to the next, the floats on both sides are right, and
+ * so are those that are no numbers, or none of 0..1. Rows of any length. */
+static void deep_steps_are_exact(void **state) {
+    (void)state;
+    enum { WIDTH = 65535 };
+    zt_image *image;
+    assert_int_equal(zt_image_create(&image, WIDTH, 1), ZT_OK);
+    uint16_t *values = malloc(WIDTH * 3 * sizeof *values);
+    assert_non_null(values);
+    for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
+        for (int code = 1; code <= WIDTH; code++) {
+            uint32_t step = deep_step(code, view);
+            for (uint32_t i = 0; i < 3; i++)
+                image->pixels[4 * (code - 1) + i] = from_bits(step - 2 + i);
+        }
+        zt_develop_rgb16(values, 0, image, view, 0, 1);
+        for (int code = 1; code <= WIDTH; code++)
+            for (int i = 0; i < 3; i++)
+                if (values[3 * (code - 1) + i] != (i < 2 ? code - 1 : code))
+                    fail_msg("view %d, before %d: %d", view, code, values[3 * (code - 1) + i]);
+    }
+    const float special[] = {0,        -0.0f,    1,      INFINITY, -INFINITY,
+                             NAN,      -NAN,     1e-45f, -1e-45f,  3e38f,
+                             0x1p-21f, 0x1p-22f, -3e38f, 1.00001f, 0.99999994f};
+    zt_image odd = {.width = 5, .height = 1, .pixels = image->pixels};
+    for (int i = 0; i < 15; i++) image->pixels[i / 3 * 4 + i % 3] = special[i];
+    for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
+        zt_develop_rgb16(values, 0, &odd, view, 0, 1);
+        for (int i = 0; i < 15; i++)
+            assert_int_equal(values[i],
+                             (int)floorl(65535 * reference(special[i], view) + 0.5L));
+    }
+    free(values);
+    zt_image_free(&image);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_are_exact),        cmocka_unit_test(any_float_is_exact),
         cmocka_unit_test(definition_is_srgb),     cmocka_unit_test(rows_and_stride),
-        cmocka_unit_test(sixteen_bits_are_exact),
+        cmocka_unit_test(sixteen_bits_are_exact), cmocka_unit_test(deep_steps_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@
 void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
                      int first, int last);
 
-/* The same to 16 bits: rows `stride` bytes apart, each value the nearest of the 65536. Some
- * fifty times slower: for files, not for films. */
+/* The same to 16 bits: rows `stride` bytes apart, each value the nearest of the 65536. */
 void zt_develop_rgb16(uint16_t *values, size_t stride, const zt_image *image, zt_view view,
                       int first, int last);
 
