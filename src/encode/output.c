@@ -87,13 +87,6 @@ static zt_status check_options(const char *target, const zt_sink *sink,
     return ZT_OK;
 }
 
-const char *zt_sink_option(const zt_output_option *options, const char *name) {
-    const char *value = NULL;
-    for (; options && options->name; options++)
-        if (zt_text_equal(options->name, name)) value = options->value;
-    return value;
-}
-
 static zt_status check_format(const zt_output_format *format, zt_listener listener) {
     bool size_legal = format->width >= 1 && format->width <= ZT_IMAGE_SIDE_MAX &&
                       format->height >= 1 && format->height <= ZT_IMAGE_SIDE_MAX;

@@ -24,7 +24,4 @@ typedef struct zt_sink {
 
 extern const zt_sink zt_sink_stills, zt_sink_movie, zt_sink_checksum;
 
-/* What is wished for; NULL where nothing is. */
-const char *zt_sink_option(const zt_output_option *options, const char *name);
-
 #endif
