@@ -52,19 +52,20 @@ typedef struct edges {
 static void mark_band(void *user, int task, int worker) {
     (void)worker;
     const edges *e = user;
-    zt_film *film = &e->frame->work->film;
+    zt_canvas *canvas = &e->frame->work->canvas;
     const float *pixels = e->frame->image->pixels;
-    int last = film->height - 1;
-    for (int y = task * BAND; y < min_int((task + 1) * BAND, film->height); y++) {
-        size_t row = zt_film_pixel(film, 0, y);
-        size_t above = zt_film_pixel(film, 0, max_int(y - 1, 0));
-        size_t below = zt_film_pixel(film, 0, min_int(y + 1, last));
-        uint8_t *mark = film->spread + row;
-        memset(mark, 0, (size_t)film->width);
-        mark_paths(mark, film->path + above, film->path + row, film->path + below, film->width);
+    int last = canvas->height - 1;
+    for (int y = task * BAND; y < min_int((task + 1) * BAND, canvas->height); y++) {
+        size_t row = zt_canvas_pixel(canvas, 0, y);
+        size_t above = zt_canvas_pixel(canvas, 0, max_int(y - 1, 0));
+        size_t below = zt_canvas_pixel(canvas, 0, min_int(y + 1, last));
+        uint8_t *mark = canvas->edge + row;
+        memset(mark, 0, (size_t)canvas->width);
+        mark_paths(mark, canvas->path + above, canvas->path + row, canvas->path + below,
+                   canvas->width);
         if (y > 0 && y < last)
             mark_colors(mark, pixels + 4 * above, pixels + 4 * row, pixels + 4 * below,
-                        film->width, e->allowed);
+                        canvas->width, e->allowed);
     }
 }
 
@@ -72,13 +73,13 @@ static void mark_band(void *user, int task, int worker) {
 static void spread_band(void *user, int task, int worker) {
     (void)worker;
     const edges *e = user;
-    zt_film *film = &e->frame->work->film;
-    int width = film->width, reach = e->reach;
-    for (int y = task * BAND; y < min_int((task + 1) * BAND, film->height); y++) {
-        uint8_t *least = film->least + zt_film_pixel(film, 0, y);
-        for (int from = max_int(y - reach, 0); from <= min_int(y + reach, film->height - 1);
+    zt_canvas *canvas = &e->frame->work->canvas;
+    int width = canvas->width, reach = e->reach;
+    for (int y = task * BAND; y < min_int((task + 1) * BAND, canvas->height); y++) {
+        uint8_t *least = canvas->least + zt_canvas_pixel(canvas, 0, y);
+        for (int from = max_int(y - reach, 0); from <= min_int(y + reach, canvas->height - 1);
              from++) {
-            const uint8_t *mark = film->spread + zt_film_pixel(film, 0, from);
+            const uint8_t *mark = canvas->edge + zt_canvas_pixel(canvas, 0, from);
             for (int x = 0; x < width; x++) {
                 bool any = false;
                 for (int k = max_int(x - reach, 0); k <= min_int(x + reach, width - 1); k++)
@@ -90,28 +91,28 @@ static void spread_band(void *user, int task, int worker) {
 }
 
 /* Blocks of four pixels in a row, of which most want nothing, by their bytes. */
-static void add_tile(zt_film *film, const zt_frame *f, int x, int y) {
+static void add_tile(zt_canvas *canvas, const zt_frame *f, int x, int y) {
     for (int i = 0; i < ZT_BATCH; i += 4) {
         int column = x + f->work->column[i], row = y + f->work->row[i];
-        if (column >= film->width || row >= film->height) continue;
-        const uint8_t *least = film->least + zt_film_pixel(film, column, row);
-        int count = min_int(4, film->width - column);
+        if (column >= canvas->width || row >= canvas->height) continue;
+        const uint8_t *least = canvas->least + zt_canvas_pixel(canvas, column, row);
+        int count = min_int(4, canvas->width - column);
         uint32_t bytes = 0;
         memcpy(&bytes, least, (size_t)count);
         for (int k = 0; bytes && k < count; k++)
-            if (least[k]) zt_film_add(film, column + k, row);
+            if (least[k]) zt_canvas_add(canvas, column + k, row);
     }
 }
 
 void zt_edges_find(zt_frame *f) {
-    zt_film *film = &f->work->film;
+    zt_canvas *canvas = &f->work->canvas;
     const zt_sampling *s = &f->job->sampling;
-    int bands = (film->height + BAND - 1) / BAND;
+    int bands = (canvas->height + BAND - 1) / BAND;
     edges e = {f, (float)(2 * s->error), (int)ceil((zt_filter_width(s) - 1) / 2)};
-    memset(film->least, 0, (size_t)film->width * (size_t)film->height);
+    memset(canvas->least, 0, (size_t)canvas->width * (size_t)canvas->height);
     zt_pool_run(f->pool, bands, mark_band, &e);
     zt_pool_run(f->pool, bands, spread_band, &e);
     for (int tile = 0; tile < f->tile_count; tile++)
-        add_tile(film, f, tile % f->tile_columns * TILE_SIDE,
+        add_tile(canvas, f, tile % f->tile_columns * TILE_SIDE,
                  tile / f->tile_columns * TILE_SIDE);
 }

@@ -4,7 +4,7 @@
 
 #include "render/work.h"
 
-/* Looks at the image and the film's paths, and lets wait the pixels that differ from one of
+/* Looks at the image and the canvas's paths, and lets wait the pixels that differ from one of
  * their neighbours: in what they saw, or in color by more than the error allows. */
 void zt_edges_find(zt_frame *frame);
 

@@ -30,7 +30,7 @@ static inline double square3(float r, float g, float b) {
 }
 
 /* Adds a sample of each pixel, from `first` in the batch on, to the sums. */
-ZT_CLONES static int add_samples(struct zt_film_half *restrict sum,
+ZT_CLONES static int add_samples(struct zt_canvas_half *restrict sum,
                                  const zt_radiance *restrict light, int first, int count) {
     int left_out = 0;
     for (int i = 0; i < count; i++) {
@@ -48,7 +48,7 @@ ZT_CLONES static int add_samples(struct zt_film_half *restrict sum,
 
 /* Moves the samples that count negatively out of a batch's light to the sums of those: what is
  * left there adds nothing, being no number. */
-static int take_negative(struct zt_film_half *sum, zt_radiance *light, const float *weight,
+static int take_negative(struct zt_canvas_half *sum, zt_radiance *light, const float *weight,
                          int first, int count) {
     int moved = 0;
     for (int i = 0; i < count; i++) {
@@ -66,27 +66,27 @@ static int take_negative(struct zt_film_half *sum, zt_radiance *light, const flo
 }
 
 /* Whether one of the pixels around sees the same in its middle. */
-static bool is_known(const zt_film *film, const zt_slot *slot, uint32_t path) {
+static bool is_known(const zt_canvas *canvas, const zt_slot *slot, uint32_t path) {
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++) {
             int x = slot->column + dx, y = slot->row + dy;
-            if (x < 0 || y < 0 || x >= film->width || y >= film->height) continue;
-            if (film->path[zt_film_pixel(film, x, y)] == path) return true;
+            if (x < 0 || y < 0 || x >= canvas->width || y >= canvas->height) continue;
+            if (canvas->path[zt_canvas_pixel(canvas, x, y)] == path) return true;
         }
     return false;
 }
 
 /* A straight edge through a pixel has the middles of its neighbours on both sides: where a
  * sample sees what they do not, something is thin, and may go on beside the pixel. */
-static void look_for_strange(zt_film *film, const int32_t *slots, const uint32_t *path, int now,
-                             int count) {
+static void look_for_strange(zt_canvas *canvas, const int32_t *slots, const uint32_t *path,
+                             int now, int count) {
     for (int i = 0; i < count; i++) {
-        zt_slot *slot = &film->slots[slots[i]];
-        uint32_t known = film->path[zt_film_pixel(film, slot->column, slot->row)];
+        zt_slot *slot = &canvas->slots[slots[i]];
+        uint32_t known = canvas->path[zt_canvas_pixel(canvas, slot->column, slot->row)];
         for (int k = 0; k < now && !slot->strange; k++) {
             uint32_t seen = path[k * count + i];
             if (seen == known) continue;
-            slot->strange = !is_known(film, slot, seen);
+            slot->strange = !is_known(canvas, slot, seen);
             known = seen;
         }
     }
@@ -101,7 +101,7 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
         zt_samples_take(&own->places, &own->rays, f->job, own->column, own->row, k * count,
                         count, j->asked + done + k);
     zt_frame_trace(f, own, now * count);
-    if (f->is_first) look_for_strange(&f->work->film, slots, own->light.path, now, count);
+    if (f->is_first) look_for_strange(&f->work->canvas, slots, own->light.path, now, count);
     for (int k = 0; k < now; k++) {
         int half = done + k >= first_half;
         if (j->is_signed)
@@ -112,29 +112,29 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
     }
 }
 
-static zt_film_sum sum_at(const struct zt_film_half *half, int i) {
-    return (zt_film_sum){half->r[i], half->g[i], half->b[i], half->square[i], half->taken[i]};
+static zt_canvas_sum sum_at(const struct zt_canvas_half *half, int i) {
+    return (zt_canvas_sum){half->r[i], half->g[i], half->b[i], half->square[i], half->taken[i]};
 }
 
-static zt_film_sum both(zt_film_sum a, zt_film_sum b) {
-    return (zt_film_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.square + b.square,
-                         a.taken + b.taken};
+static zt_canvas_sum both(zt_canvas_sum a, zt_canvas_sum b) {
+    return (zt_canvas_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.square + b.square,
+                           a.taken + b.taken};
 }
 
 /* What a slot has taken in the round becomes its own, and says how far off it is. */
-static void finish_slot(zt_film *film, int32_t index, const round_job *j,
-                        const zt_film_sums *sums, int i) {
-    zt_slot *slot = &film->slots[index];
-    zt_film_sum positive[2] = {both(slot->sum, sum_at(&sums->positive[0], i)),
-                               sum_at(&sums->positive[1], i)};
-    zt_film_sum none = {0}, negative[2] = {none, none};
+static void finish_slot(zt_canvas *canvas, int32_t index, const round_job *j,
+                        const zt_canvas_sums *sums, int i) {
+    zt_slot *slot = &canvas->slots[index];
+    zt_canvas_sum positive[2] = {both(slot->sum, sum_at(&sums->positive[0], i)),
+                                 sum_at(&sums->positive[1], i)};
+    zt_canvas_sum none = {0}, negative[2] = {none, none};
     if (j->is_signed) {
-        negative[0] = both(film->negative[index], sum_at(&sums->negative[0], i));
+        negative[0] = both(canvas->negative[index], sum_at(&sums->negative[0], i));
         negative[1] = sum_at(&sums->negative[1], i);
-        film->negative[index] = both(negative[0], negative[1]);
+        canvas->negative[index] = both(negative[0], negative[1]);
     }
-    film->error[zt_film_pixel(film, slot->column, slot->row)] =
-        zt_film_estimate(positive, negative);
+    canvas->error[zt_canvas_pixel(canvas, slot->column, slot->row)] =
+        zt_canvas_estimate(positive, negative);
     slot->sum = both(positive[0], positive[1]);
     slot->asked += j->more;
 }
@@ -142,10 +142,10 @@ static void finish_slot(zt_film *film, int32_t index, const round_job *j,
 /* The samples of a round for slots that share batches. */
 static void sample_group(const round_job *j, zt_render_thread *own, const int32_t *slots,
                          int count) {
-    zt_film *film = &j->frame->work->film;
+    zt_canvas *canvas = &j->frame->work->canvas;
     for (int i = 0; i < count; i++) {
-        own->column[i] = film->slots[slots[i]].column;
-        own->row[i] = film->slots[slots[i]].row;
+        own->column[i] = canvas->slots[slots[i]].column;
+        own->row[i] = canvas->slots[slots[i]].row;
     }
     zt_samples_key(&own->places, j->frame->job, own->column, own->row, count);
     memset(own->sums.positive, 0, sizeof own->sums.positive);
@@ -156,17 +156,17 @@ static void sample_group(const round_job *j, zt_render_thread *own, const int32_
         if (zt_frame_stopped(j->frame)) return;
         take_samples(j, own, slots, count, done, min_int(together, j->more - done));
     }
-    for (int i = 0; i < count; i++) finish_slot(film, slots[i], j, &own->sums, i);
+    for (int i = 0; i < count; i++) finish_slot(canvas, slots[i], j, &own->sums, i);
 }
 
 static void sample_task(void *user, int task, int worker) {
     const round_job *j = user;
-    const zt_film *film = &j->frame->work->film;
+    const zt_canvas *canvas = &j->frame->work->canvas;
     zt_render_thread *own = &j->frame->work->threads[worker];
-    int32_t end = min_int((task + 1) * j->task_slots, film->round_count);
+    int32_t end = min_int((task + 1) * j->task_slots, canvas->round_count);
     for (int32_t i = task * j->task_slots; i < end; i += j->group) {
         if (zt_frame_stopped(j->frame)) return;
-        sample_group(j, own, film->round + i, min_int(j->group, end - i));
+        sample_group(j, own, canvas->round + i, min_int(j->group, end - i));
     }
 }
 
@@ -178,45 +178,51 @@ static void decide_task(void *user, int task, int worker) {
     (void)worker;
     const round_job *j = user;
     const zt_frame *f = j->frame;
-    zt_film *film = &f->work->film;
-    int32_t end = min_int((task + 1) * DECISIONS, film->round_count);
+    zt_canvas *canvas = &f->work->canvas;
+    int32_t end = min_int((task + 1) * DECISIONS, canvas->round_count);
     for (int32_t i = task * DECISIONS; i < end; i++) {
-        const zt_slot *s = &film->slots[film->round[i]];
-        int least = f->is_first ? 1 << film->least[zt_film_pixel(film, s->column, s->row)] : 0;
-        film->goes_on[i] =
+        const zt_slot *s = &canvas->slots[canvas->round[i]];
+        int least =
+            f->is_first ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
+        canvas->goes_on[i] =
             s->asked < f->job->sampling.max &&
-            (s->asked < least || zt_film_error(film, s->column, s->row) > j->wanted);
+            (s->asked < least || zt_canvas_error(canvas, s->column, s->row) > j->wanted);
     }
 }
 
-/* Of the slots that wait, those with the fewest samples. */
-static void begin_round(zt_film *film) {
-    int32_t fewest = INT32_MAX, kept = 0;
-    for (int32_t i = 0; i < film->waiting_count; i++)
-        fewest = min_int(fewest, film->slots[film->waiting[i]].asked);
-    film->round_count = 0;
-    for (int32_t i = 0; i < film->waiting_count; i++) {
-        int32_t slot = film->waiting[i];
-        bool now = film->slots[slot].asked == fewest;
-        film->round[film->round_count] = slot;
-        film->waiting[kept] = slot;
-        film->round_count += now;
+/* Of the slots that wait, those with the fewest samples; returns how many these are. */
+static int32_t begin_round(zt_canvas *canvas) {
+    int32_t fewest = INT32_MAX, kept = 0, count = 0;
+    for (int32_t i = 0; i < canvas->waiting_count; i++)
+        fewest = min_int(fewest, canvas->waiting[i].asked);
+    for (int32_t i = 0; i < canvas->waiting_count; i++) {
+        zt_waiting w = canvas->waiting[i];
+        bool now = w.asked == fewest;
+        canvas->round[count] = w.slot;
+        canvas->waiting[kept] = w;
+        count += now;
         kept += !now;
     }
-    film->waiting_count = kept;
+    canvas->waiting_count = kept;
+    canvas->round_count = count;
+    return fewest;
 }
 
-/* Those that go on wait again, and the neighbours of strange ones do. */
-static void end_round(zt_film *film) {
-    for (int32_t i = 0; i < film->round_count; i++) {
-        zt_slot *s = &film->slots[film->round[i]];
-        if (film->goes_on[i]) film->waiting[film->waiting_count++] = film->round[i];
+/* Those that go on, with so many samples, wait again; and the neighbours of strange ones do. */
+static void end_round(zt_canvas *canvas, int32_t asked, bool may_be_strange) {
+    for (int32_t i = 0; i < canvas->round_count; i++) {
+        canvas->waiting[canvas->waiting_count] = (zt_waiting){canvas->round[i], asked};
+        canvas->waiting_count += canvas->goes_on[i];
+    }
+    for (int32_t i = 0; may_be_strange && i < canvas->round_count; i++) {
+        zt_slot *s = &canvas->slots[canvas->round[i]];
+        int column = s->column, row = s->row;
         if (!s->strange) continue;
         s->strange = false;
-        for (int y = max_int(s->row - 1, 0); y <= min_int(s->row + 1, film->height - 1); y++)
-            for (int x = max_int(s->column - 1, 0);
-                 x <= min_int(s->column + 1, film->width - 1); x++)
-                zt_film_add(film, x, y);
+        for (int y = max_int(row - 1, 0); y <= min_int(row + 1, canvas->height - 1); y++)
+            for (int x = max_int(column - 1, 0); x <= min_int(column + 1, canvas->width - 1);
+                 x++)
+                zt_canvas_add(canvas, x, y);
     }
 }
 
@@ -227,11 +233,10 @@ static void run(zt_pool *pool, int count, void (*task)(void *, int, int), void *
         zt_pool_run(pool, count, task, user);
 }
 
-static round_job plan_round(zt_frame *f) {
-    const zt_film *film = &f->work->film;
+static round_job plan_round(zt_frame *f, int32_t asked) {
     const zt_sampling *s = &f->job->sampling;
     round_job j = {.frame = f,
-                   .asked = film->slots[film->round[0]].asked,
+                   .asked = asked,
                    .wanted = (float)(s->error * s->error),
                    .is_signed = zt_warp_is_signed(f->job->warp)};
     int first = max_int(s->min, s->edges ? EDGE_SAMPLES : PAIR);
@@ -246,28 +251,28 @@ static round_job plan_round(zt_frame *f) {
 static void write_task(void *user, int task, int worker) {
     (void)worker;
     const round_job *j = user;
-    const zt_film *film = &j->frame->work->film;
-    int32_t end = min_int((task + 1) * DECISIONS, film->slot_count);
+    const zt_canvas *canvas = &j->frame->work->canvas;
+    int32_t end = min_int((task + 1) * DECISIONS, canvas->slot_count);
     for (int32_t i = task * DECISIONS; i < end; i++) {
-        const zt_slot *s = &film->slots[i];
+        const zt_slot *s = &canvas->slots[i];
         double mean[3];
-        zt_film_mean(mean, &s->sum, j->is_signed ? &film->negative[i] : NULL);
-        float *to = j->frame->image->pixels + 4 * zt_film_pixel(film, s->column, s->row);
+        zt_canvas_mean(mean, &s->sum, j->is_signed ? &canvas->negative[i] : NULL);
+        float *to = j->frame->image->pixels + 4 * zt_canvas_pixel(canvas, s->column, s->row);
         for (int k = 0; k < 3; k++) to[k] = (float)mean[k];
         to[3] = 1;
     }
 }
 
-static void write_channels(const zt_film *film, zt_image *image) {
+static void write_channels(const zt_canvas *canvas, zt_image *image) {
     float *samples = zt_image_channel(image, "samples"),
           *error = zt_image_channel(image, "error");
-    size_t count = (size_t)film->width * (size_t)film->height;
+    size_t count = (size_t)canvas->width * (size_t)canvas->height;
     for (size_t i = 0; samples && i < count; i++) samples[i] = 1;
     for (size_t i = 0; error && i < count; i++) error[i] = -1;
-    for (int32_t i = 0; (samples || error) && i < film->slot_count; i++) {
-        const zt_slot *s = &film->slots[i];
-        size_t pixel = zt_film_pixel(film, s->column, s->row);
-        float estimate = zt_film_error(film, s->column, s->row);
+    for (int32_t i = 0; (samples || error) && i < canvas->slot_count; i++) {
+        const zt_slot *s = &canvas->slots[i];
+        size_t pixel = zt_canvas_pixel(canvas, s->column, s->row);
+        float estimate = zt_canvas_error(canvas, s->column, s->row);
         if (samples) samples[pixel] = (float)s->asked;
         if (error) error[pixel] = estimate < 0 ? -1 : sqrtf(estimate);
     }
@@ -276,28 +281,35 @@ static void write_channels(const zt_film *film, zt_image *image) {
 static int task_count(int32_t count, int32_t each) { return (count + each - 1) / each; }
 
 zt_status zt_refine(zt_frame *f) {
-    zt_film *film = &f->work->film;
+    zt_canvas *canvas = &f->work->canvas;
     round_job j = {.frame = f, .is_signed = zt_warp_is_signed(f->job->warp)};
-    while (film->waiting_count > 0) {
-        begin_round(film);
-        j = plan_round(f);
-        run(f->pool, task_count(film->round_count, j.task_slots), sample_task, &j);
+    while (canvas->waiting_count > 0) {
+        j = plan_round(f, begin_round(canvas));
+        run(f->pool, task_count(canvas->round_count, j.task_slots), sample_task, &j);
         if (f->stopped) return ZT_ESTOPPED;
-        run(f->pool, task_count(film->round_count, DECISIONS), decide_task, &j);
-        end_round(film);
+        run(f->pool, task_count(canvas->round_count, DECISIONS), decide_task, &j);
+        end_round(canvas, j.asked + j.more, f->is_first);
     }
-    run(f->pool, task_count(film->slot_count, DECISIONS), write_task, &j);
-    write_channels(film, f->image);
+    run(f->pool, task_count(canvas->slot_count, DECISIONS), write_task, &j);
+    write_channels(canvas, f->image);
     return ZT_OK;
 }
 
+/* The pixels of a tile get slots one after the other, and so do the tiles. */
+static void begin_task(void *user, int task, int worker) {
+    (void)worker;
+    zt_frame *f = user;
+    zt_canvas *canvas = &f->work->canvas;
+    int x = task % f->tile_columns * TILE_SIDE, y = task / f->tile_columns * TILE_SIDE;
+    int width = min_int(TILE_SIDE, canvas->width - x);
+    int height = min_int(TILE_SIDE, canvas->height - y);
+    int32_t slot = y * canvas->width + x * height;
+    for (int i = 0; i < ZT_BATCH; i++)
+        if (f->work->column[i] < width && f->work->row[i] < height)
+            zt_canvas_add_as(canvas, slot++, x + f->work->column[i], y + f->work->row[i]);
+}
+
 void zt_refine_begin(zt_frame *f) {
-    zt_film *film = &f->work->film;
-    for (int tile = 0; tile < f->tile_count; tile++) {
-        int x = tile % f->tile_columns * TILE_SIDE, y = tile / f->tile_columns * TILE_SIDE;
-        for (int i = 0; i < ZT_BATCH; i++) {
-            int column = x + f->work->column[i], row = y + f->work->row[i];
-            if (column < film->width && row < film->height) zt_film_add(film, column, row);
-        }
-    }
+    run(f->pool, f->tile_count, begin_task, f);
+    zt_canvas_added_all(&f->work->canvas);
 }

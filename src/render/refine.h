@@ -1,5 +1,5 @@
-/* Further samples for the pixels of a film, in rounds over the whole picture, until each is as
- * good as it was asked for. */
+/* Further samples for the pixels of a canvas, in rounds over the whole picture, until each is
+ * as good as it was asked for. */
 #ifndef ZT_RENDER_REFINE_H
 #define ZT_RENDER_REFINE_H
 

@@ -40,7 +40,7 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
 }
 
 void zt_render_work_close(zt_render_work *work) {
-    if (work) zt_film_close(&work->film);
+    if (work) zt_canvas_close(&work->canvas);
 }
 
 /* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are
@@ -150,7 +150,7 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
                 count == most);
     if (f->is_first)
-        fill_paths(f->work->film.path, f->image->width, own->light.path, own->column, own->row,
+        fill_paths(f->work->canvas.path, f->image->width, own->light.path, own->column, own->row,
                    count);
     return true;
 }
@@ -216,8 +216,8 @@ static zt_status render_all(zt_frame *f) {
         fill_channels(f->image, s);
         return render_tiles(f) ? ZT_OK : ZT_ESTOPPED;
     }
-    zt_film *film = &f->work->film;
-    ZT_TRY(zt_film_open(film, f->image->width, f->image->height, zt_warp_is_signed(job->warp)));
+    zt_canvas *canvas = &f->work->canvas;
+    ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height, zt_warp_is_signed(job->warp)));
     f->is_first = s->edges && can_tell_edges(job);
     if (f->is_first) {
         if (!render_tiles(f)) return ZT_ESTOPPED;

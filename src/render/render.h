@@ -14,8 +14,8 @@
 #include "render/lens.h"
 #include "tracer/kernel.h"
 
-/* What each thread works with, and the film; made once in a run. Its threads' memory is the
- * arena's; closing gives back the film, which only some samplings ask for. */
+/* What each thread works with, and the canvas; made once in a run. Its threads' memory is the
+ * arena's; closing gives back the canvas, which only some samplings ask for. */
 typedef struct zt_render_work zt_render_work;
 zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread_count);
 void zt_render_work_close(zt_render_work *work); /* may be NULL */

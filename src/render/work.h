@@ -5,7 +5,7 @@
 #include <assert.h>
 #include <stdatomic.h>
 
-#include "render/film.h"
+#include "render/canvas.h"
 #include "render/render.h"
 #include "render/samples.h"
 
@@ -24,7 +24,7 @@ typedef struct zt_render_thread {
     zt_places places;
     zt_rays rays;
     zt_radiance light;
-    zt_film_sums sums;
+    zt_canvas_sums sums;
     void *kernel; /* what it works with */
     zt_render_count count;
 } zt_render_thread;
@@ -32,7 +32,7 @@ typedef struct zt_render_thread {
 struct zt_render_work {
     int32_t column[ZT_BATCH], row[ZT_BATCH]; /* of each pixel within a tile */
     zt_render_thread *threads;
-    zt_film film;
+    zt_canvas canvas;
 };
 
 typedef struct zt_frame {

@@ -1,0 +1,143 @@
+#include "render/canvas.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { NO_ESTIMATE = -1, NOT_YET = -2 }; /* of pixels without slots, and with new ones */
+
+/* Large pieces of zeros cost nothing until they are touched. */
+static zt_status allocate(zt_canvas *canvas, size_t count) {
+    canvas->slots = calloc(count, sizeof *canvas->slots);
+    canvas->waiting = calloc(count, sizeof *canvas->waiting);
+    canvas->round = calloc(count, sizeof *canvas->round);
+    canvas->goes_on = calloc(count, sizeof *canvas->goes_on);
+    canvas->error = calloc(count, sizeof *canvas->error);
+    canvas->path = calloc(count, sizeof *canvas->path);
+    canvas->least = calloc(count, sizeof *canvas->least);
+    canvas->edge = calloc(count, sizeof *canvas->edge);
+    bool all = canvas->slots && canvas->waiting && canvas->round && canvas->goes_on &&
+               canvas->error && canvas->path && canvas->least && canvas->edge;
+    for (size_t i = 0; all && i < count; i++) canvas->error[i] = NO_ESTIMATE;
+    return all ? ZT_OK : ZT_EMEMORY;
+}
+
+zt_status zt_canvas_open(zt_canvas *canvas, int width, int height, bool is_signed) {
+    size_t count = (size_t)width * (size_t)height;
+    if (count > INT32_MAX) return ZT_EMEMORY;
+    if (canvas->width != width || canvas->height != height) {
+        zt_canvas_close(canvas);
+        zt_status status = allocate(canvas, count);
+        if (status != ZT_OK) {
+            zt_canvas_close(canvas);
+            return status;
+        }
+        canvas->width = width;
+        canvas->height = height;
+    }
+    if (is_signed && !canvas->negative) {
+        canvas->negative = calloc(count, sizeof *canvas->negative);
+        if (!canvas->negative) return ZT_EMEMORY;
+    }
+    bool few = canvas->slot_count < INT32_MAX / 8 && 8 * (size_t)canvas->slot_count < count;
+    for (int32_t i = 0; few && i < canvas->slot_count; i++) {
+        const zt_slot *s = &canvas->slots[i];
+        canvas->error[zt_canvas_pixel(canvas, s->column, s->row)] = NO_ESTIMATE;
+    }
+    for (size_t i = 0; !few && i < count; i++) canvas->error[i] = NO_ESTIMATE;
+    canvas->slot_count = canvas->waiting_count = canvas->round_count = 0;
+    return ZT_OK;
+}
+
+void zt_canvas_close(zt_canvas *canvas) {
+    free(canvas->slots);
+    free(canvas->negative);
+    free(canvas->waiting);
+    free(canvas->round);
+    free(canvas->goes_on);
+    free(canvas->error);
+    free(canvas->path);
+    free(canvas->least);
+    free(canvas->edge);
+    *canvas = (zt_canvas){0};
+}
+
+void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row) {
+    canvas->error[zt_canvas_pixel(canvas, column, row)] = NOT_YET;
+    if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
+    canvas->slots[slot] = (zt_slot){.column = column, .row = row};
+    canvas->waiting[slot] = (zt_waiting){slot, 0};
+}
+
+void zt_canvas_added_all(zt_canvas *canvas) {
+    canvas->slot_count = canvas->waiting_count = canvas->width * canvas->height;
+}
+
+void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row) {
+    float *error = &canvas->error[zt_canvas_pixel(canvas, column, row)];
+    if (*error != NO_ESTIMATE) return;
+    *error = NOT_YET;
+    int32_t slot = canvas->slot_count++;
+    if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
+    canvas->slots[slot] = (zt_slot){.column = column, .row = row};
+    canvas->waiting[canvas->waiting_count++] = (zt_waiting){slot, 0};
+}
+
+void zt_canvas_mean(double mean[3], const zt_canvas_sum *positive,
+                    const zt_canvas_sum *negative) {
+    double sign = 1, r = positive->r, g = positive->g, b = positive->b;
+    int32_t count = positive->taken;
+    if (negative && negative->taken > 0) {
+        int32_t all = count + negative->taken;
+        sign = 4 * (count - negative->taken) < all ? 1 : -1;
+        count = sign < 0 ? count - negative->taken : all;
+        r += sign * negative->r;
+        g += sign * negative->g;
+        b += sign * negative->b;
+    }
+    mean[0] = count ? r / count : 0;
+    mean[1] = count ? g / count : 0;
+    mean[2] = count ? b / count : 0;
+}
+
+float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum negative[2]) {
+    double r = 0, g = 0, b = 0, square = 0, count[2], mean[2][3];
+    for (int i = 0; i < 2; i++) {
+        const zt_canvas_sum *p = &positive[i], *n = &negative[i];
+        r += p->r + n->r;
+        g += p->g + n->g;
+        b += p->b + n->b;
+        square += p->square + n->square;
+        count[i] = p->taken + n->taken;
+    }
+    if (count[0] == 0 || count[1] == 0) return 0;
+    double all = count[0] + count[1];
+    double spread = square - (r * r + g * g + b * b) / all; /* all - 1 times the variance */
+    if (spread < 1e-12 * square) return 0; /* all are the same, but for roundings here */
+    for (int i = 0; i < 2; i++) zt_canvas_mean(mean[i], &positive[i], &negative[i]);
+    double apart = 0;
+    for (int k = 0; k < 3; k++) apart += (mean[0][k] - mean[1][k]) * (mean[0][k] - mean[1][k]);
+    apart *= count[0] * count[1] / (all * all);
+    double left = spread / ((all - 1) * all * sqrt(all));
+    return (float)((apart > left ? apart : left) / 3);
+}
+
+/* Adds up a row of three estimates by their weights 1 2 1. */
+static void add_row(float *sum, float *weights, const float error[3], float weight) {
+    for (int k = 0; k < 3; k++) {
+        float own = error[k] < 0 ? 0 : k == 1 ? 2 * weight : weight;
+        *sum += own > 0 ? own * error[k] : 0;
+        *weights += own;
+    }
+}
+
+float zt_canvas_error(const zt_canvas *canvas, int32_t column, int32_t row) {
+    float sum = 0, weights = 0;
+    for (int y = row - 1; y <= row + 1; y++) {
+        if (y < 0 || y >= canvas->height) continue;
+        const float *error = &canvas->error[zt_canvas_pixel(canvas, column, y)];
+        float near[3] = {column > 0 ? error[-1] : NO_ESTIMATE, error[0],
+                         column + 1 < canvas->width ? error[1] : NO_ESTIMATE};
+        add_row(&sum, &weights, near, y == row ? 2 : 1);
+    }
+    return weights > 0 ? sum / weights : NO_ESTIMATE;
+}
