@@ -16,6 +16,7 @@
 #include <zoetrope/output.h>
 #include <zoetrope/rate.h>
 #include <zoetrope/renderer.h>
+#include <zoetrope/replay.h>
 #include <zoetrope/status.h>
 
 #define ZT_VERSION "0.1.0"

@@ -6,6 +6,9 @@
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
+#define MOVIE                                                                                  \
+    (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
+     BIT(ENCODER_OPTION) | BIT(COMMENT) | BIT(AUDIO))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION) |       \
      BIT(PRESET))
@@ -27,7 +30,7 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
                            images, FINISHED | BIT(FRAMES)},
     [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
-                          "output/NAME.NNNN.png", images, FINISHED},
+                          "output/NAME.NNNN.png", images, FINISHED | BIT(PIXEL) | BIT(SAMPLE)},
     [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
                             "A quick movie: a quarter of the size, one sample a pixel",
                             "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},

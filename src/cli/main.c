@@ -16,6 +16,7 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/replay.h"
 
 enum { EXIT_MISTAKES = 1, EXIT_USAGE = 2, EXIT_REFUSED = 3, EXIT_INTERRUPTED = 130 };
 
@@ -151,8 +152,17 @@ static zt_status render(const zt_options *options, const zt_manifest *manifest,
     zt_status status =
         zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
     if (status == ZT_OK && manifest) zt_renderer_follow(renderer, manifest);
-    if (status == ZT_OK) status = write_frames(renderer, options, first, last, target, report);
+    if (status == ZT_OK && options->replays)
+        status = replay(renderer, options, report);
+    else if (status == ZT_OK)
+        status = write_frames(renderer, options, first, last, target, report);
     zt_renderer_close(&renderer);
+static zt_status replay(zt_renderer *renderer, const zt_options *options, zt_report *report) {
+    zt_watcher watcher = {.stopped = stopped};
+    listen_for_interrupts();
+    return zt_replay_pixel(renderer, options, &watcher, report);
+}
+
     free(target);
     return status;
 }

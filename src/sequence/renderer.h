@@ -38,7 +38,8 @@ struct zt_renderer {
 };
 
 /* A frame on its way: what the scene is meanwhile, the same ready for rays, the lens, and how
- * all that is rendered. In the frame's memory. */
+ * all that is rendered. It points into itself, so it stays where it is; the rest is in the
+ * frame's memory. */
 typedef struct zt_taking {
     zt_exposure exposure;
     zt_division division;
