@@ -9,10 +9,14 @@
 
 enum { REFLECTIONS_MAX = 1000, SAMPLES_MAX = 65536, FRAME_COUNT_MAX = 100 * 1000 * 1000 };
 
-/* Where adaptive sampling says nothing else: samples a pixel; and the error that refined edges
- * may have, half of what a display of 8 bits can tell apart in the middle of its range. */
-enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64 };
+/* Where adaptive sampling says nothing else: samples a pixel, of which there are at least so
+ * many more at most than at least; and the error that refined edges may have, half of what a
+ * display of 8 bits can tell apart in the middle of its range. */
+enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64, MAX_PER_MIN = 4 };
 #define EDGES_ERROR 0.004
+
+/* A smaller error is none that can be estimated. */
+#define ERROR_LEAST 1e-6
 
 static void read_size(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
     int64_t size[2];
@@ -57,44 +61,71 @@ static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *n
 static void read_shutter(zt_shutter *shutter, zt_mistakes *mistakes, const zt_node *node) {
     static const char *const names[] = {"angle", "phase"};
     const double turn = 2 * 3.14159265358979323846;
-    const zt_node *angle_node = node, *phase_node = NULL;
+    const zt_range open = {0, 3600, "deg"}, any = {-3600, 3600, "deg"};
     double angle = 0, phase = 0;
-    if (node->kind == ZT_NODE_MAPPING) {
+    if (node->kind != ZT_NODE_MAPPING) {
+        zt_read_angle(&angle, mistakes, node, "shutter", open);
+    } else {
         zt_fields fields;
         zt_fields_open(&fields, mistakes, node, "shutter", names, COUNT(names));
-        angle_node = zt_field_required(&fields, mistakes, "angle", &node->place);
-        phase_node = zt_field(&fields, "phase");
+        const zt_node *width = zt_field_required(&fields, mistakes, "angle", &node->place),
+                      *begin = zt_field(&fields, "phase");
+        if (width) zt_read_angle(&angle, mistakes, width, "angle", open);
+        if (begin) zt_read_angle(&phase, mistakes, begin, "phase", any);
     }
-    zt_range open = {0, 3600, "deg"}, any = {-3600, 3600, "deg"};
-    if (angle_node) zt_read_angle(&angle, mistakes, angle_node, "angle", open);
-    if (phase_node) zt_read_angle(&phase, mistakes, phase_node, "phase", any);
     *shutter = (zt_shutter){phase / turn, (phase + angle) / turn};
 }
 
-/* "samples: 64", or a mapping of "min", "max" and "error". */
+/* Whether something is written as a number, so that a number is meant. */
+static bool is_number(const zt_node *node) {
+    double number;
+    const char *unit;
+    return zt_read_quantity(&number, &unit, node);
+}
+
+/* "samples: 64": as many for all, or where edges are refined, as many at most. */
+static void read_count(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
+    int64_t count;
+    if (!is_number(node))
+        zt_expected(mistakes, node, "samples",
+                    "a whole number, or \"min\", \"max\" and \"error\"");
+    else if (zt_read_integer(&count, mistakes, node, "samples", 1, SAMPLES_MAX))
+        sampling->max = (int)count;
+    if (!sampling->edges) sampling->min = sampling->max;
+}
+
+/* "samples: { min: 4, max: 256, error: 0.002 }": as many as the error asks for. */
 static void read_samples(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
     static const char *const names[] = {"min", "max", "error"};
-    int64_t min = MIN_SAMPLES, max = MAX_SAMPLES;
     if (node->kind != ZT_NODE_MAPPING) {
-        if (!zt_read_integer(&max, mistakes, node, "samples", 1, SAMPLES_MAX)) return;
-        sampling->min = sampling->max = (int)max;
+        read_count(sampling, mistakes, node);
         return;
     }
     zt_fields fields;
     zt_fields_open(&fields, mistakes, node, "samples", names, COUNT(names));
     const zt_node *min_node = zt_field(&fields, "min"), *max_node = zt_field(&fields, "max"),
-                  *error = zt_field_required(&fields, mistakes, "error", &node->place);
-    if (min_node) zt_read_integer(&min, mistakes, min_node, "min", 1, SAMPLES_MAX);
-    if (max_node) zt_read_integer(&max, mistakes, max_node, "max", 1, SAMPLES_MAX);
+                  *error = sampling->edges
+                               ? zt_field(&fields, "error")
+                               : zt_field_required(&fields, mistakes, "error", &node->place);
+    int64_t min = sampling->edges ? 1 : MIN_SAMPLES, max = MAX_SAMPLES;
     if (error)
-        zt_read_number(&sampling->error, mistakes, error, "error", (zt_range){0, 1, NULL});
-    if (max_node && min_node && max < min)
-        zt_mistake(mistakes, &max_node->place, "\"max\" is below \"min\"");
+        zt_read_number(&sampling->error, mistakes, error, "error",
+                       (zt_range){ERROR_LEAST, 1, NULL});
+    bool read = !min_node || zt_read_integer(&min, mistakes, min_node, "min", 1, SAMPLES_MAX);
+    if (max < min * MAX_PER_MIN) max = min * MAX_PER_MIN;
+    if (max > SAMPLES_MAX) max = SAMPLES_MAX;
+    read &= !max_node || zt_read_integer(&max, mistakes, max_node, "max", 1, SAMPLES_MAX);
+    if (!read) return;
+    if (min_node && max < min) {
+        zt_mistake(mistakes, &max_node->place, "\"max\" is %s, and \"min\" is %s",
+                   zt_show(max_node->text).text, zt_show(min_node->text).text);
+        zt_mistake_note(mistakes, &min_node->place, "\"min\" stands here");
+    }
     sampling->max = (int)max;
     sampling->min = (int)(min < max ? min : max);
 }
 
-/* "filter: gaussian", or a mapping of "kind" and "width". */
+/* "filter: gaussian", or a mapping of "kind" and "width" from end to end. */
 static void read_filter(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
     static const char *const names[] = {"kind", "width"};
     static const char *const filters[ZT_FILTER_COUNT] = {"box", "tent", "gaussian", "mitchell",
@@ -114,10 +145,13 @@ static void read_filter(zt_sampling *sampling, zt_mistakes *mistakes, const zt_n
         sampling->filter = (zt_filter)choice;
 }
 
+/* "seed: 7", or "seed: fixed". */
 static void read_seed(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
     int64_t number;
     if (node->kind == ZT_NODE_TEXT && zt_text_equal(node->text, "fixed"))
         sampling->seed_fixed = true;
+    else if (!is_number(node))
+        zt_expected(mistakes, node, "seed", "a whole number or \"fixed\"");
     else if (zt_read_integer(&number, mistakes, node, "seed", 0, UINT32_MAX))
         sampling->seed = (uint32_t)number;
 }
@@ -135,6 +169,7 @@ static void read_sampling(zt_sampling *sampling, zt_mistakes *mistakes,
         *sampling =
             (zt_sampling){.min = 1, .max = MAX_SAMPLES, .error = EDGES_ERROR, .edges = true};
     if (samples) read_samples(sampling, mistakes, samples);
+    if (sampling->min == sampling->max) sampling->error = 0; /* all have as many */
     if (filter) read_filter(sampling, mistakes, filter);
     if (seed) read_seed(sampling, mistakes, seed);
 }
