@@ -242,13 +242,14 @@ static void print_knee(const chart *c) {
 static int legend(const chart *c, bool print) {
     char fit[64] = "";
     if (isfinite(c->f->slope_time))
-        snprintf(fit, sizeof fit, "fitted: slope %.2f", c->f->slope_time);
+        snprintf(fit, sizeof fit, "fitted: slope %s%.2f", c->f->slope_time < 0 ? "−" : "",
+                 fabs(c->f->slope_time));
     double x = c->left;
     int row = 0, entries = c->series_count + (*fit ? 2 : 0);
     for (int i = 0; i < entries; i++) {
         const char *name = i < c->series_count    ? c->series[i].name
                            : i == c->series_count ? fit
-                                                  : "white noise: -0.5";
+                                                  : "white noise: −0.5";
         double width = 24 + 6.7 * zt_svg_letter_count(name) + 16;
         if (x + width > c->right + 16 && x > c->left) x = c->left, row++;
         double y = TOP + ROW * row;

@@ -11,7 +11,7 @@
 #include "cli/pictures.h"
 #include "cli/tables.h"
 
-enum { WIDE = 860, NARROW = 368 };
+enum { WIDE = 1000, NARROW = 368 };
 static const char ending[] = ".html";
 
 /* A page under way. */

@@ -4,8 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double asked_for[ZT_ADVICE_COUNT] = {0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
-static const double usual = 0.005; /* what is recommended where it can be had */
+static const double asked_for[ZT_ADVICE_COUNT] = {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005};
+
+/* What is recommended first, where it can be had, and where it is more than the first rung
+ * gives anyway: then the least that is not. */
+static const double usual = 0.005;
 
 static int count_even(const zt_ladder *ladder) {
     int count = 0;
@@ -40,7 +43,8 @@ zt_findings zt_findings_of(const zt_ladder *ladder, const zt_animation *animatio
     fit(&f);
     for (int i = 0; i < ZT_ADVICE_COUNT; i++) {
         f.advice[i] = (zt_advice){asked_for[i], zt_ladder_choose(ladder, asked_for[i])};
-        if (f.advice[i].rung >= 0 && asked_for[i] >= usual) f.best = i;
+        bool more = f.best < 0 || asked_for[i] >= usual || f.advice[f.best].rung == 0;
+        if (f.advice[i].rung >= 0 && more) f.best = i;
     }
     return f;
 }
@@ -99,7 +103,9 @@ zt_words zt_words_of_setting(const zt_rung *rung) {
 
 zt_words zt_words_of_time(double s) {
     zt_words w;
-    if (s < 0.9995)
+    if (s < 0.000995)
+        snprintf(w.text, sizeof w.text, "%.0f µs", 1e6 * s);
+    else if (s < 0.9995)
         snprintf(w.text, sizeof w.text, "%.*f ms", s < 0.00995 ? 1 : 0, 1000 * s);
     else if (s < 99.5)
         snprintf(w.text, sizeof w.text, "%.*f s", s < 9.95 ? 1 : 0, s);

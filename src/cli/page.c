@@ -134,11 +134,11 @@ static void print_slopes(const page *p) {
     const zt_rung *from = &p->ladder->rungs[f->first_fitted],
                   *to = &p->ladder->rungs[f->first_fitted + f->fitted_count - 1];
     fprintf(p->out,
-            "From %d to %d samples the error falls with time to the power of <b>%.2f</b>, and "
-            "with the number of samples to the power of <b>%.2f</b>; for independent random "
-            "samples, white noise, both would be -0.5. Twice the time leaves %.0f %% of the "
+            "From %d to %d samples the error falls with time to the power of <b>−%.2f</b>, and "
+            "with the number of samples to the power of <b>−%.2f</b>; for independent random "
+            "samples, white noise, both would be −0.5. Twice the time leaves %.0f %% of the "
             "error. ",
-            from->sampling.max, to->sampling.max, f->slope_time, f->slope_samples,
+            from->sampling.max, to->sampling.max, -f->slope_time, -f->slope_samples,
             100 * pow(2, f->slope_time));
     if (f->knee >= 0)
         fprintf(p->out,
@@ -153,9 +153,9 @@ static void print_chart(const page *p, const char *wide, const char *narrow) {
     fprintf(p->out,
             "<h2>The chart</h2>\n<figure class=\"chart\">\n"
             "<div class=\"wide\" role=\"img\" aria-label=\"Error against run time, both axes "
-            "logarithmic; the table of all rungs has its numbers\">\n%s</div>\n"
+            "logarithmic; the tables below have its numbers\">\n%s</div>\n"
             "<div class=\"narrow\" role=\"img\" aria-label=\"Error against run time, both axes "
-            "logarithmic; the table of all rungs has its numbers\">\n%s</div>\n<figcaption>",
+            "logarithmic; the tables below have its numbers\">\n%s</div>\n<figcaption>",
             wide, narrow);
     print_slopes(p);
     fputs("Points that are hollow are too near the reference's own error to be known.<br>The "
@@ -258,52 +258,69 @@ static bool begins_kind(const zt_ladder *ladder, int i) {
                      a->reference != b->reference);
 }
 
-static void print_stages(const page *p) {
+/* The rows of a table begin with the setting. */
+static void begin_row(const page *p, int i) {
+    const zt_rung *rung = &p->ladder->rungs[i];
+    const char *faint = zt_ladder_knows(p->ladder, rung) ? "" : " faint";
+    fprintf(p->out, "<tr class=\"%s%s\"><th scope=\"row\">%s</th>",
+            begins_kind(p->ladder, i) ? "kind" : "", faint, zt_words_of_rung(rung).text);
+}
+
+static void begin_table(const page *p, const char *label) {
+    fprintf(p->out,
+            "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"%s\">\n"
+            "<table>\n<thead><tr><th scope=\"col\">setting</th>",
+            label);
+}
+
+static void end_table(const page *p) { fputs("</tbody>\n</table>\n</div>\n", p->out); }
+
+static void print_cost(const page *p, int i) {
+    const zt_rung *rung = &p->ladder->rungs[i];
+    const double times[] = {rung->stages.freeze_s, rung->stages.prepare_s,
+                            rung->stages.render_s, rung->stages.write_s};
+    double sum = times[0] + times[1] + times[2] + times[3];
+    double rays = rung->primary_rays + rung->shadow_rays + rung->mirror_rays;
+    begin_row(p, i);
+    fprintf(p->out, "<td>%.3g</td><td><div class=\"bar\" aria-hidden=\"true\">", rung->samples);
+    for (int s = 0; s < 4; s++)
+        fprintf(p->out, "<i style=\"width:%.2f%%;background:%s\"></i>", 100 * times[s] / sum,
+                stage_hues[s]);
+    fputs("</div></td>", p->out);
+    for (int s = 0; s < 4; s++) fprintf(p->out, "<td>%s</td>", zt_words_of_time(times[s]).text);
+    fprintf(p->out, "<td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td></tr>\n",
+            zt_words_of_time(rung->frame_s).text, zt_words_of_time(rung->cpu_s).text,
+            zt_words_of_count(rays).text, zt_words_of_count(rays / rung->frame_s).text,
+            zt_words_of_bytes(rung->peak_bytes).text);
+}
+
+static void print_costs(const page *p) {
     fputs("<h2>Where the time goes</h2>\n<p class=\"key soft\">", p->out);
     for (int s = 0; s < 4; s++)
         fprintf(p->out, "<i style=\"background:%s\"></i>%s", stage_hues[s], stage_names[s]);
     fputs("</p>\n<p class=\"soft\">Writing, here a PNG file, goes on behind the rendering of "
-          "the next frame, and is not in the time of a frame.</p>\n"
-          "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Time of each stage"
-          "\">\n<table>\n<thead><tr><th scope=\"col\">setting</th>"
-          "<th scope=\"col\" class=\"left\">shares</th>",
+          "the next frame, and is not in the time of a frame.</p>\n",
+          p->out);
+    begin_table(p, "What each rung costs");
+    fputs("<th scope=\"col\">samples<small>a pixel</small></th>"
+          "<th scope=\"col\" class=\"left\">stages</th>",
           p->out);
     for (int s = 0; s < 4; s++) fprintf(p->out, "<th scope=\"col\">%s</th>", stage_names[s]);
-    fputs("<th scope=\"col\">a frame</th></tr></thead>\n<tbody>\n", p->out);
-    for (int i = 0; i < p->ladder->rung_count; i++) {
-        const zt_rung *rung = &p->ladder->rungs[i];
-        const double times[] = {rung->stages.freeze_s, rung->stages.prepare_s,
-                                rung->stages.render_s, rung->stages.write_s};
-        double sum = times[0] + times[1] + times[2] + times[3];
-        fprintf(p->out,
-                "<tr%s><th scope=\"row\">%s</th><td><div class=\"bar\" "
-                "aria-hidden=\"true\">",
-                begins_kind(p->ladder, i) ? " class=\"kind\"" : "",
-                zt_words_of_rung(rung).text);
-        for (int s = 0; s < 4; s++)
-            fprintf(p->out, "<i style=\"width:%.2f%%;background:%s\"></i>",
-                    100 * times[s] / sum, stage_hues[s]);
-        fputs("</div></td>", p->out);
-        for (int s = 0; s < 4; s++)
-            fprintf(p->out, "<td>%s</td>", zt_words_of_time(times[s]).text);
-        fprintf(p->out, "<td>%s</td></tr>\n", zt_words_of_time(rung->frame_s).text);
-    }
-    fputs("</tbody>\n</table>\n</div>\n", p->out);
+    fputs("<th scope=\"col\">time<small>a frame</small></th>"
+          "<th scope=\"col\">CPU<small>all threads</small></th>"
+          "<th scope=\"col\">rays<small>a frame</small></th>"
+          "<th scope=\"col\">rays<small>a second</small></th>"
+          "<th scope=\"col\">memory<small>at its peak</small></th></tr></thead>\n<tbody>\n",
+          p->out);
+    for (int i = 0; i < p->ladder->rung_count; i++) print_cost(p, i);
+    end_table(p);
 }
 
-static void print_rung(const page *p, int i) {
+static void print_error(const page *p, int i) {
     const zt_rung *rung = &p->ladder->rungs[i];
-    double rays = rung->primary_rays + rung->shadow_rays + rung->mirror_rays;
-    const char *class = begins_kind(p->ladder, i)          ? " class=\"kind\""
-                        : zt_ladder_knows(p->ladder, rung) ? ""
-                                                           : " class=\"faint\"";
-    fprintf(p->out, "<tr%s><th scope=\"row\">%s</th>", class, zt_words_of_rung(rung).text);
-    fprintf(p->out, "<td>%.4g</td><td>%s</td><td>%s</td>", rung->samples,
-            zt_words_of_time(rung->frame_s).text, zt_words_of_time(rung->cpu_s).text);
-    fprintf(p->out, "<td>%s</td><td>%s</td><td>%s</td>", zt_words_of_count(rays).text,
-            zt_words_of_count(rays / rung->frame_s).text,
-            zt_words_of_bytes(rung->peak_bytes).text);
-    fprintf(p->out, "<td>%s</td><td>%.2g</td><td>%.2g</td>", zt_words_of_error(p->f, rung).text,
+    begin_row(p, i);
+    fprintf(p->out, "<td>%s</td><td>%s</td><td>%.2g</td><td>%.2g</td>",
+            zt_words_of_time(rung->frame_s).text, zt_words_of_error(p->f, rung).text,
             rung->error.relative_mse, rung->error.p999);
     if (isfinite(rung->error.psnr_db))
         fprintf(p->out, "<td>%.1f</td>", rung->error.psnr_db);
@@ -313,40 +330,36 @@ static void print_rung(const page *p, int i) {
     if (isfinite(rung->flicker))
         fprintf(p->out, "<td>%.2g</td>", rung->flicker);
     else
-        fputs("<td>none</td>", p->out);
+        fputs("<td>one frame</td>", p->out);
     fprintf(p->out, "<td>%.3g %%</td></tr>\n", 100 * rung->error.not_finite);
 }
 
-static void print_rungs(const page *p) {
-    fputs("<h2>All rungs</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-          "aria-label=\"All rungs\">\n<table>\n<thead><tr><th scope=\"col\">setting</th>"
-          "<th scope=\"col\">samples<small>a pixel</small></th>"
-          "<th scope=\"col\">time<small>a frame</small></th>"
-          "<th scope=\"col\">CPU<small>all threads</small></th>"
-          "<th scope=\"col\">rays<small>a frame</small></th>"
-          "<th scope=\"col\">rays<small>a second</small></th>"
-          "<th scope=\"col\">memory<small>at its peak</small></th>"
-          "<th scope=\"col\">RMSE</th><th scope=\"col\">relative MSE</th>"
-          "<th scope=\"col\">error<small>99.9 %</small></th>"
+static void print_errors(const page *p) {
+    fputs("<h2>What is wrong</h2>\n", p->out);
+    begin_table(p, "How far each rung is off");
+    fputs("<th scope=\"col\">time<small>a frame</small></th><th scope=\"col\">RMSE</th>"
+          "<th scope=\"col\">relative MSE</th>"
+          "<th scope=\"col\">99.9 %<small>of pixels below</small></th>"
           "<th scope=\"col\">PSNR<small>dB</small></th><th scope=\"col\">SSIM</th>"
           "<th scope=\"col\">FLIP</th><th scope=\"col\">flicker</th>"
           "<th scope=\"col\">not finite</th></tr></thead>\n<tbody>\n",
           p->out);
-    for (int i = 0; i < p->ladder->rung_count; i++) print_rung(p, i);
-    fputs("</tbody>\n</table>\n</div>\n", p->out);
+    for (int i = 0; i < p->ladder->rung_count; i++) print_error(p, i);
+    end_table(p);
 }
 
 /* ---- what else is to be said ---------------------------------------------------------------
  */
 
 static void print_left_out(const page *p) {
-    fputs("<h2>What this scene does without</h2>\n<ul>\n<li>", p->out);
+    fputs("<h2>What was left out for this scene</h2>\n<p>Frame ", p->out);
+    fprintf(p->out, "%" PRId64 ": ", p->f->frames[0]);
     words(p, p->ladder->precision);
-    if (*p->ladder->motion) fputs("</li>\n<li>", p->out);
+    if (*p->ladder->motion) fputs(".<br>", p->out);
     words(p, p->ladder->motion);
-    fputs("</li>\n", p->out);
+    fputs(".</p>\n<ul>\n", p->out);
     for (int i = 0; i < p->ladder->left_out_count; i++)
-        fprintf(p->out, "<li>no %s</li>\n", p->ladder->left_out[i]);
+        fprintf(p->out, "<li>%s</li>\n", p->ladder->left_out[i]);
     fputs("</ul>\n", p->out);
 }
 
@@ -381,8 +394,8 @@ void zt_page_print(FILE *out, const zt_findings *findings, const zt_pictures *pi
     print_advice(&p);
     print_chart(&p, wide, narrow);
     print_pictures(&p);
-    print_stages(&p);
-    print_rungs(&p);
+    print_costs(&p);
+    print_errors(&p);
     print_left_out(&p);
     print_method(&p);
     fprintf(out,

@@ -262,14 +262,16 @@ static int neighbours(int64_t frames[2], int64_t frame, int64_t frame_count) {
     return frame_count > 1 ? 2 : 1;
 }
 
-/* How many samples the largest rung takes; renders a frame, which also warms up. */
+/* How many samples the largest rung takes; renders and writes a frame, which also warms up. */
 static zt_status choose_samples(climb *c) {
     int samples = c->settings->render.samples ? c->settings->render.samples : SAMPLES_DEFAULT;
     cost k;
     c->renderer->sampling.min = c->renderer->sampling.max = PILOT_SAMPLES;
     c->renderer->sampling.error = 0;
     c->renderer->sampling.edges = false;
+    double write_s;
     ZT_TRY(run_once(&k, c, c->images[0], c->settings->frames[0]));
+    ZT_TRY(measure_writing(&write_s, c, c->images[0]));
     double limit_s = c->settings->frame_limit_s;
     if (limit_s > 0) {
         ZT_TRY(measure(&k, c, c->images[0], c->settings->frames[0]));

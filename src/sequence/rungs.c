@@ -9,8 +9,8 @@ enum { REFERENCE_FACTOR = 16, ADAPTIVE_LEAST = 4, RUNGS_MAX = 256 };
 static const double targets[] = {0.05, 0.02, 0.01, 0.005, 0.002};
 enum { TARGET_COUNT = sizeof targets / sizeof *targets };
 
-/* A reference's error may make up a tenth of what is measured against it: of independent errors
- * the squares add up. */
+/* Of independent errors the squares add up: above this many times its reference's own error, a
+ * tenth of what is measured is the reference's at most. */
 static const double known_above = 2.2;
 
 /* ---- the plan ------------------------------------------------------------------------------
@@ -115,10 +115,10 @@ void zt_ladder_say_left_out(zt_ladder *ladder, const zt_exposure *exposure) {
     }
     bool pinhole = scene->camera.aperture <= 0 && scene->camera.f_number <= 0;
     leave_out(ladder, exposure->moment_count == 1,
-              "moments: nothing moves while the shutter is open");
+              "motion: nothing moves while the shutter is open");
     leave_out(ladder, pinhole,
-              "points of the lens: its opening is a pinhole, and all is sharp");
-    leave_out(ladder, !wide, "points of lamps: none of them has a size");
+              "random points of the lens: its opening is a pinhole, and all is sharp");
+    leave_out(ladder, !wide, "random points of lamps: none of them has a size");
     leave_out(ladder, !shadow, "shadow rays: no lamp casts shadows");
     leave_out(ladder, !mirror, "mirrored rays: nothing reflects");
     leave_out(ladder, !pattern, "patterns: all colors are plain");
