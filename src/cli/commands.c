@@ -6,9 +6,6 @@
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
-#define MOVIE                                                                                  \
-    (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
-     BIT(ENCODER_OPTION) | BIT(COMMENT) | BIT(AUDIO))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION) |       \
      BIT(PRESET))

@@ -15,8 +15,8 @@
 #include "cli/explain.h"
 #include "cli/options.h"
 #include "cli/progress.h"
-#include "cli/report.h"
 #include "cli/replay.h"
+#include "cli/report.h"
 
 enum { EXIT_MISTAKES = 1, EXIT_USAGE = 2, EXIT_REFUSED = 3, EXIT_INTERRUPTED = 130 };
 
@@ -137,6 +137,12 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options, 
     return status;
 }
 
+static zt_status replay(zt_renderer *renderer, const zt_options *options, zt_report *report) {
+    zt_watcher watcher = {.stopped = stopped};
+    listen_for_interrupts();
+    return zt_replay_pixel(renderer, options, &watcher, report);
+}
+
 static int64_t last_frame(const zt_options *options, const zt_film *film) {
     return options->all_frames ? film->frame_count - 1 : options->last;
 }
@@ -157,12 +163,6 @@ static zt_status render(const zt_options *options, const zt_manifest *manifest,
     else if (status == ZT_OK)
         status = write_frames(renderer, options, first, last, target, report);
     zt_renderer_close(&renderer);
-static zt_status replay(zt_renderer *renderer, const zt_options *options, zt_report *report) {
-    zt_watcher watcher = {.stopped = stopped};
-    listen_for_interrupts();
-    return zt_replay_pixel(renderer, options, &watcher, report);
-}
-
     free(target);
     return status;
 }
