@@ -101,37 +101,21 @@ zt_words zt_words_of_setting(const zt_rung *rung) {
     return w;
 }
 
+/* Two digits, or all of whole numbers. */
+static zt_words quantity(double number, const char *unit) {
+    zt_words w;
+    snprintf(w.text, sizeof w.text, number < 9.95 ? "%.2g %s" : "%.0f %s", number, unit);
+    return w;
+}
+
 zt_words zt_words_of_time(double s) {
-    zt_words w;
-    if (s < 0.000995)
-        snprintf(w.text, sizeof w.text, "%.0f µs", 1e6 * s);
-    else if (s < 0.9995)
-        snprintf(w.text, sizeof w.text, "%.*f ms", s < 0.00995 ? 1 : 0, 1000 * s);
-    else if (s < 99.5)
-        snprintf(w.text, sizeof w.text, "%.*f s", s < 9.95 ? 1 : 0, s);
-    else if (s < 3600)
-        snprintf(w.text, sizeof w.text, "%.0f min", s / 60);
-    else
-        snprintf(w.text, sizeof w.text, "%.*f h", s < 36000 ? 1 : 0, s / 3600);
-    return w;
+    if (s < 0.000995) return quantity(1e6 * s, "µs");
+    if (s < 0.9995) return quantity(1e3 * s, "ms");
+    if (s < 99.5) return quantity(s, "s");
+    return s < 5970 ? quantity(s / 60, "min") : quantity(s / 3600, "h");
 }
 
-zt_words zt_words_of_bytes(double bytes) {
-    zt_words w;
-    snprintf(w.text, sizeof w.text, "%.0f MB", bytes / 1e6);
-    return w;
-}
-
-zt_words zt_words_of_count(double count) {
-    zt_words w;
-    if (count < 1e4)
-        snprintf(w.text, sizeof w.text, "%.0f", count);
-    else if (count < 1e6)
-        snprintf(w.text, sizeof w.text, "%.0f thousand", count / 1e3);
-    else
-        snprintf(w.text, sizeof w.text, "%.*f million", count < 1e7 ? 1 : 0, count / 1e6);
-    return w;
-}
+zt_words zt_words_of_bytes(double bytes) { return quantity(bytes / 1e6, "MB"); }
 
 zt_words zt_words_of_error(const zt_findings *findings, const zt_rung *rung) {
     zt_words w;

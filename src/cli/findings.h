@@ -39,7 +39,6 @@ zt_words zt_words_of_rung(const zt_rung *rung);    /* "48 samples" */
 zt_words zt_words_of_setting(const zt_rung *rung); /* "samples: 48", as in a description */
 zt_words zt_words_of_time(double seconds);         /* "1.9 s", "3 min 20 s" */
 zt_words zt_words_of_bytes(double bytes);          /* "12 MB" */
-zt_words zt_words_of_count(double count);          /* "1.2 million" */
 zt_words zt_words_of_error(const zt_findings *findings, const zt_rung *rung); /* its RMSE */
 
 const char *zt_filter_name(zt_filter filter);

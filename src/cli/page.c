@@ -288,10 +288,9 @@ static void print_cost(const page *p, int i) {
                 stage_hues[s]);
     fputs("</div></td>", p->out);
     for (int s = 0; s < 4; s++) fprintf(p->out, "<td>%s</td>", zt_words_of_time(times[s]).text);
-    fprintf(p->out, "<td>%s</td><td>%s</td><td>%s</td><td>%s</td><td>%s</td></tr>\n",
+    fprintf(p->out, "<td>%s</td><td>%s</td><td>%.3g</td><td>%.3g</td><td>%s</td></tr>\n",
             zt_words_of_time(rung->frame_s).text, zt_words_of_time(rung->cpu_s).text,
-            zt_words_of_count(rays).text, zt_words_of_count(rays / rung->frame_s).text,
-            zt_words_of_bytes(rung->peak_bytes).text);
+            rays / 1e6, rays / rung->frame_s / 1e6, zt_words_of_bytes(rung->peak_bytes).text);
 }
 
 static void print_costs(const page *p) {
@@ -308,8 +307,8 @@ static void print_costs(const page *p) {
     for (int s = 0; s < 4; s++) fprintf(p->out, "<th scope=\"col\">%s</th>", stage_names[s]);
     fputs("<th scope=\"col\">time<small>a frame</small></th>"
           "<th scope=\"col\">CPU<small>all threads</small></th>"
-          "<th scope=\"col\">rays<small>a frame</small></th>"
-          "<th scope=\"col\">rays<small>a second</small></th>"
+          "<th scope=\"col\">rays<small>millions</small></th>"
+          "<th scope=\"col\">rays<small>millions a second</small></th>"
           "<th scope=\"col\">memory<small>at its peak</small></th></tr></thead>\n<tbody>\n",
           p->out);
     for (int i = 0; i < p->ladder->rung_count; i++) print_cost(p, i);

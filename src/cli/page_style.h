@@ -8,7 +8,7 @@ static const char page_style[] =
     "body{margin:0;color:var(--ink);background:#fff;font:16px/1.55 system-ui,-apple-system,"
     "\"Segoe UI\",Roboto,\"Helvetica Neue\",\"Noto Sans\",\"DejaVu Sans\",sans-serif;"
     "text-rendering:optimizeLegibility}\n"
-    "main,header,footer{max-width:1160px;margin:0 auto;padding:0 28px}\n"
+    "main,header,footer{max-width:1200px;margin:0 auto;padding:0 28px}\n"
     "header{padding-top:44px}\n"
     "h1{font-size:34px;line-height:1.15;letter-spacing:-.015em;margin:0 0 10px;"
     "font-weight:680}\n"
