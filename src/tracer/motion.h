@@ -58,6 +58,10 @@ static inline xform *zt_course_worlds(const zt_course *c, int32_t moment) {
 zt_status ZT_REAL_NAME(zt_prepare_motion)(bool *there, zt_making *making,
                                           const zt_course *course);
 
+/* The same for a mesh. */
+zt_status ZT_REAL_NAME(zt_prepare_mesh_motion)(bool *there, zt_making *making,
+                                               zt_placed_mesh *placed, const zt_course *course);
+
 /* ---- looks ----------------------------------------------------------------------------------
  */
 

@@ -142,22 +142,30 @@ static vec3 unit(vec3 v) { return vec3_scale(v, 1 / sqrt(vec3_dot(v, v))); }
  * vector. */
 typedef struct mesh_point {
     const zt_placed_mesh *placed;
+    zt_placed_mesh now; /* room for it */
     const uint32_t *of;
     vec3 at, v[3], area;
 } mesh_point;
 
-static mesh_point mesh_point_of(const zt_points *w, const zt_batch *rays,
-                                const zt_tracer *tracer, int k) {
-    mesh_point p;
-    p.placed = &tracer->placed[tracer->primitives[w->primitive[k]].placed];
-    const zt_mesh *mesh = p.placed->built->mesh;
+/* The mesh that point k is on, as it is at the ray's time; `now` is room for one that moves. */
+static const zt_placed_mesh *placed_at(zt_placed_mesh *now, const zt_points *w,
+                                       const zt_origins *from, const zt_tracer *tracer, int k) {
+    const zt_placed_mesh *m = &tracer->placed[tracer->primitives[w->primitive[k]].placed];
+    if (!m->places) return m;
+    *now = zt_placed_at(m, from->moment[k], (double)from->between[k]);
+    return now;
+}
+
+static void find_mesh_point(mesh_point *p, const zt_points *w, const zt_batch *rays,
+                            const zt_tracer *tracer, int k) {
     const zt_origins *from = rays->from;
-    p.of = mesh->triangles + 3 * (int64_t)rays->part[k];
-    p.at = zt_placed_point(p.placed,
-                           (vec3){(double)from->x[k], (double)from->y[k], (double)from->z[k]});
-    for (int i = 0; i < 3; i++) p.v[i] = corner(mesh->positions, p.of, i);
-    p.area = vec3_cross(vec3_sub(p.v[1], p.v[0]), vec3_sub(p.v[2], p.v[0]));
-    return p;
+    p->placed = placed_at(&p->now, w, from, tracer, k);
+    const zt_mesh *mesh = p->placed->built->mesh;
+    p->of = mesh->triangles + 3 * (int64_t)rays->part[k];
+    p->at = zt_placed_point(p->placed,
+                            (vec3){(double)from->x[k], (double)from->y[k], (double)from->z[k]});
+    for (int i = 0; i < 3; i++) p->v[i] = corner(mesh->positions, p->of, i);
+    p->area = vec3_cross(vec3_sub(p->v[1], p->v[0]), vec3_sub(p->v[2], p->v[0]));
 }
 
 /* The shares that the corners have in a point. */
@@ -172,7 +180,8 @@ static void share(double *shares, const mesh_point *p) {
 
 static void color_mesh(zt_points *w, const zt_batch *rays, const zt_tracer *tracer, int k) {
     double shares[3], color[3] = {0, 0, 0};
-    mesh_point p = mesh_point_of(w, rays, tracer, k);
+    mesh_point p;
+    find_mesh_point(&p, w, rays, tracer, k);
     share(shares, &p);
     for (int i = 0; i < 3; i++) {
         const float *c = p.placed->built->mesh->colors + 3 * (int64_t)p.of[i];
@@ -240,14 +249,16 @@ static void find_facets(zt_points *restrict w, zt_origins *restrict from,
     }
 }
 
-/* Listed points on meshes, by runs that lie on the same one. */
+/* Listed points on meshes, by runs that lie on the same one; on one that moves, one by one. */
 static void find_meshes(zt_points *w, zt_batch *rays, const zt_tracer *tracer,
                         const int32_t *list, int count) {
     facets f;
+    zt_placed_mesh now;
     for (int first = 0, end; first < count; first = end) {
         int32_t primitive = w->primitive[list[first]];
         for (end = first + 1; end < count && w->primitive[list[end]] == primitive;) end++;
-        const zt_placed_mesh *m = &tracer->placed[tracer->primitives[primitive].placed];
+        const zt_placed_mesh *m = placed_at(&now, w, rays->from, tracer, list[first]);
+        if (m->places) end = first + 1;
         load_facets(&f, m->built->mesh, rays->part, end - first, list + first);
         find_facets(w, rays->from, &f, m, list + first, end - first);
         for (int j = first; m->vertex_colors && j < end; j++)
@@ -261,7 +272,8 @@ static void find_meshes(zt_points *w, zt_batch *rays, const zt_tracer *tracer,
  * the flat normal, which faces the ray, says. */
 static void smooth_mesh(zt_points *w, zt_batch *rays, const zt_tracer *tracer, int k) {
     if (!tracer->placed[tracer->primitives[w->primitive[k]].placed].smooth) return;
-    mesh_point p = mesh_point_of(w, rays, tracer, k);
+    mesh_point p;
+    find_mesh_point(&p, w, rays, tracer, k);
     zt_origins *from = rays->from;
     vec3 flat = {(double)w->nx[k], (double)w->ny[k], (double)w->nz[k]};
     vec3 own[3], bent = {0, 0, 0}, lift = {0, 0, 0};

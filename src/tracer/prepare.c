@@ -105,8 +105,10 @@ static zt_status make_moving(bool *there, zt_making *m, zt_placed_mesh *placed,
     }
     if (!*there) return ZT_OK;
     zt_extent all = *m->extent;
-    if (m->primitive->kind == ZT_PRIMITIVE_MESH) return ZT_OK;
-    ZT_TRY(ZT_REAL_NAME(zt_prepare_motion)(there, m, c));
+    if (m->primitive->kind == ZT_PRIMITIVE_MESH)
+        ZT_TRY(ZT_REAL_NAME(zt_prepare_mesh_motion)(there, m, placed, c));
+    else
+        ZT_TRY(ZT_REAL_NAME(zt_prepare_motion)(there, m, c));
     add_extent(m->extent, &all);
     m->primitive->stretch = (real)m->extent->stretch;
     return ZT_OK;
@@ -146,6 +148,7 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_course *
         if (m.primitive->kind == ZT_PRIMITIVE_MESH) {
             m.primitive->placed = all->placed_count++;
             ZT_TRY(zt_meshes_build(&placed->built, meshes, m.object->mesh));
+            tracer->moves |= placed->places != NULL;
         }
         ZT_TRY(prepare_looks(all, &m, c, i));
         tracer->moves |= m.primitive->poses || (all->changes && all->changes[all->count].looks);

@@ -88,10 +88,56 @@ static void look_ahead(lanes *restrict l, const search *restrict s, int first) {
     for (int j = count - first; j < ZT_BATCH_LANES; j++) l->t[j] = 0;
 }
 
+static inline double greatest(double a, double b) { return a > b ? a : b; }
+static inline double most_abs(vec3 v) {
+    return greatest(greatest(fabs(v.x), fabs(v.y)), fabs(v.z));
+}
+
+/* To the space of a mesh that moves, as it is at each ray's time, inverted in
+ * double precision. */
+static void enter_moving_mesh(lanes *restrict l, const search *restrict s, int first) {
+    const zt_batch *restrict rays = s->rays;
+    const zt_origins *restrict from = rays->from;
+    const xform *restrict places = s->placed->places;
+    const double inner = (double)s->placed->inner;
+    WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
+        int i = first + j;
+        const xform *a = &places[from->moment[i]], *b = a + 1;
+        double between = (double)from->between[i];
+        vec3 x = zt_mix3(a->x, b->x, between), y = zt_mix3(a->y, b->y, between);
+        vec3 z = zt_mix3(a->z, b->z, between), shift = zt_mix3(a->shift, b->shift, between);
+        vec3 rx = vec3_cross(y, z), ry = vec3_cross(z, x), rz = vec3_cross(x, y);
+        double scale = 1 / vec3_dot(rx, x);
+        vec3 o = {(double)from->x[i] - shift.x, (double)from->y[i] - shift.y,
+                  (double)from->z[i] - shift.z};
+        vec3 d = {(double)rays->dx[i], (double)rays->dy[i], (double)rays->dz[i]};
+        real dx = (real)(vec3_dot(rx, d) * scale), dy = (real)(vec3_dot(ry, d) * scale),
+             dz = (real)(vec3_dot(rz, d) * scale);
+        double reach = greatest(greatest(most_abs(rx), most_abs(ry)), most_abs(rz)) *
+                       (scale < 0 ? -scale : scale);
+        double largest = most_abs(o) + 2 * most_abs(shift);
+        l->ox[j] = (real)(vec3_dot(rx, o) * scale);
+        l->oy[j] = (real)(vec3_dot(ry, o) * scale);
+        l->oz[j] = (real)(vec3_dot(rz, o) * scale);
+        l->dx[j] = dx;
+        l->dy[j] = dy;
+        l->dz[j] = dz;
+        l->kx[j] = 1 / dx;
+        l->ky[j] = 1 / dy;
+        l->kz[j] = 1 / dz;
+        l->room[j] = 32 * REAL_ROUNDING * (real)(3 * reach * largest + inner);
+    }
+}
+
 static void enter_mesh(lanes *restrict l, const search *restrict s, int first) {
     const zt_batch *restrict rays = s->rays;
     const zt_origins *restrict from = rays->from;
     const zt_placed_mesh *m = s->placed;
+    if (m->places) {
+        enter_moving_mesh(l, s, first);
+        look_ahead(l, s, first);
+        return;
+    }
     const real rxx = (real)m->rows[0].x, rxy = (real)m->rows[0].y, rxz = (real)m->rows[0].z;
     const real ryx = (real)m->rows[1].x, ryy = (real)m->rows[1].y, ryz = (real)m->rows[1].z;
     const real rzx = (real)m->rows[2].x, rzy = (real)m->rows[2].y, rzz = (real)m->rows[2].z;

@@ -374,6 +374,7 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     vec3 around = {reaches[0], reaches[1], reaches[2]};
     placed->at = back.shift;
     placed->place = place;
+    placed->places = NULL;
     placed->smooth = m->object->smooth && mesh->normals;
     placed->vertex_colors = m->object->vertex_colors && mesh->colors;
     m->primitive->kind = ZT_PRIMITIVE_MESH;

@@ -68,11 +68,33 @@ typedef struct zt_placed_mesh {
     real inner;  /* the largest coordinate of its bounds in its own space */
     real extent; /* no less than any number in the arithmetic of its place */
     bool smooth, vertex_colors;
+    /* Of one that moves, else NULL: the way back at each moment of the exposure. Then what is
+     * said above of its place is true of no other than that moment at which it was made. */
+    const xform *places;
 } zt_placed_mesh;
+
+static inline vec3 zt_mix3(vec3 a, vec3 b, double between) {
+    return vec3_add(a, vec3_scale(vec3_sub(b, a), between));
+}
 
 static inline vec3 zt_placed_point(const zt_placed_mesh *m, vec3 p) {
     return vec3_add(m->at, (vec3){vec3_dot(m->rows[0], p), vec3_dot(m->rows[1], p),
                                   vec3_dot(m->rows[2], p)});
+}
+
+/* A mesh that moves, so far on its way from a moment to the next. */
+static inline zt_placed_mesh zt_placed_at(const zt_placed_mesh *m, int32_t moment,
+                                          double between) {
+    zt_placed_mesh now = *m;
+    const xform *a = &m->places[moment], *b = a + 1;
+    now.place = (xform){zt_mix3(a->x, b->x, between), zt_mix3(a->y, b->y, between),
+                        zt_mix3(a->z, b->z, between), zt_mix3(a->shift, b->shift, between)};
+    xform back = xform_inverse(&now.place);
+    now.rows[0] = (vec3){back.x.x, back.y.x, back.z.x};
+    now.rows[1] = (vec3){back.x.y, back.y.y, back.z.y};
+    now.rows[2] = (vec3){back.x.z, back.y.z, back.z.z};
+    now.at = back.shift;
+    return now;
 }
 
 /* What of a primitive's looks changes (tracer/motion.h). */
