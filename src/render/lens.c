@@ -240,20 +240,21 @@ ZT_CLONES static void see_plainly(zt_rays *restrict rays, const zt_lens *lens,
 
 /* Loops of their own for what opens, and for what moves. */
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
+#define NOT_NULL      __attribute__((nonnull))
 
-/* All lenses with a flat picture. */
+/* All lenses with a flat picture; a pinhole where `opening` is NULL, still where `when` is. */
 ALWAYS_INLINE void see_flat(zt_rays *restrict rays, const zt_lens *lens,
                             const float *restrict x, const float *restrict y,
                             const points *restrict opening, const whens *restrict when,
-                            int count, bool opens, bool moves) {
+                            int count) {
     const view *views = lens->views;
     const view still = lens->still;
     for (int i = 0; i < count; i++) {
-        const view *from = moves ? &views[when->moment[i]] : views;
-        const view l = moves ? view_between(from, from + 1, when->between[i]) : still;
+        const view *from = when ? &views[when->moment[i]] : views;
+        const view l = when ? view_between(from, from + 1, when->between[i]) : still;
         vec3 o = plus(l.origin, (double)x[i], l.step_right, (double)y[i], l.step_down);
         vec3 d = plus(l.ahead, (double)x[i], l.right, (double)y[i], l.down);
-        if (opens) {
+        if (opening) {
             o = plus(o, opening->u[i], l.wide, opening->v[i], l.high);
             d = plus(d, -opening->u[i], l.wide_away, -opening->v[i], l.high_away);
         }
@@ -263,35 +264,38 @@ ALWAYS_INLINE void see_flat(zt_rays *restrict rays, const zt_lens *lens,
 
 ZT_CLONES static void see_flat_still(zt_rays *rays, const zt_lens *lens, const float *x,
                                      const float *y, int count) {
-    see_flat(rays, lens, x, y, NULL, NULL, count, false, false);
+    see_flat(rays, lens, x, y, NULL, NULL, count);
 }
 
-ZT_CLONES static void see_flat_moving(zt_rays *rays, const zt_lens *lens, const float *x,
-                                      const float *y, const whens *when, int count) {
-    see_flat(rays, lens, x, y, NULL, when, count, false, true);
+ZT_CLONES NOT_NULL static void see_flat_moving(zt_rays *rays, const zt_lens *lens,
+                                               const float *x, const float *y,
+                                               const whens *when, int count) {
+    see_flat(rays, lens, x, y, NULL, when, count);
 }
 
-ZT_CLONES static void see_open_still(zt_rays *rays, const zt_lens *lens, const float *x,
-                                     const float *y, const points *opening, int count) {
-    see_flat(rays, lens, x, y, opening, NULL, count, true, false);
+ZT_CLONES NOT_NULL static void see_open_still(zt_rays *rays, const zt_lens *lens,
+                                              const float *x, const float *y,
+                                              const points *opening, int count) {
+    see_flat(rays, lens, x, y, opening, NULL, count);
 }
 
-ZT_CLONES static void see_open_moving(zt_rays *rays, const zt_lens *lens, const float *x,
-                                      const float *y, const points *opening, const whens *when,
-                                      int count) {
-    see_flat(rays, lens, x, y, opening, when, count, true, true);
+ZT_CLONES NOT_NULL static void see_open_moving(zt_rays *rays, const zt_lens *lens,
+                                               const float *x, const float *y,
+                                               const points *opening, const whens *when,
+                                               int count) {
+    see_flat(rays, lens, x, y, opening, when, count);
 }
 
 /* All around: x is longitude, from behind by the left, y latitude, from straight up. */
 ALWAYS_INLINE void see_around(zt_rays *restrict rays, const zt_lens *lens,
                               const float *restrict x, const float *restrict y,
-                              const whens *restrict when, int count, bool moves) {
+                              const whens *restrict when, int count) {
     const view *views = lens->views;
     const view still = lens->still;
     const double turns_right = lens->turns_right, turns_down = lens->turns_down;
     for (int i = 0; i < count; i++) {
-        const view *from = moves ? &views[when->moment[i]] : views;
-        const view l = moves ? view_between(from, from + 1, when->between[i]) : still;
+        const view *from = when ? &views[when->moment[i]] : views;
+        const view l = when ? view_between(from, from + 1, when->between[i]) : still;
         double right, ahead, level, down;
         turned(&ahead, &right, (double)x[i] * turns_right - 0.5);
         turned(&level, &down, (double)y[i] * turns_down - 0.25);
@@ -302,12 +306,13 @@ ALWAYS_INLINE void see_around(zt_rays *restrict rays, const zt_lens *lens,
 
 ZT_CLONES static void see_around_still(zt_rays *rays, const zt_lens *lens, const float *x,
                                        const float *y, int count) {
-    see_around(rays, lens, x, y, NULL, count, false);
+    see_around(rays, lens, x, y, NULL, count);
 }
 
-ZT_CLONES static void see_around_moving(zt_rays *rays, const zt_lens *lens, const float *x,
-                                        const float *y, const whens *when, int count) {
-    see_around(rays, lens, x, y, when, count, true);
+ZT_CLONES NOT_NULL static void see_around_moving(zt_rays *rays, const zt_lens *lens,
+                                                 const float *x, const float *y,
+                                                 const whens *when, int count) {
+    see_around(rays, lens, x, y, when, count);
 }
 
 static void see_moving(zt_rays *rays, const zt_lens *lens, const float *x, const float *y,
