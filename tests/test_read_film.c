@@ -133,12 +133,55 @@ static void overrides(void **state) {
     assert_non_null(strstr(t.lines, "\"shutter\" must be an angle"));
 }
 
+/* A key between two frames is shown if the shutter is open then, and a jump is a blur. */
+static void what_a_frame_shows(void **state) {
+    (void)state;
+    const struct {
+        const char *shutter, *keys;
+        int warning_count;
+    } cases[] = {
+        {"0", "{ 0: 1, 10.25: 2, 20: 3 }", 1},
+        {"180 deg", "{ 0: 1, 10.25: 2, 20: 3 }", 0},
+        {"180 deg", "{ 0: 1, 10.75: 2, 20: 3 }", 1},
+        {"{ angle: 180, phase: -180 }", "{ 0: 1, 10.75: 2, 20: 3 }", 0},
+        {"{ angle: 180, phase: -180 }", "{ 0: 1, 10.25: 2, 20: 3 }", 1},
+        {"{ angle: 0, phase: 90 }", "{ 0: 1, 10.25: 2, 20: 3 }", 0},
+        {"0", "{ 0: 1, 10: 1, 10.2: 20, 20: 20 }", 2},
+        {"180 deg", "{ 0: 1, 10: 1, 10.2: 20, 20: 20 }", 0},
+        {"180 deg", "{ 0: 1, 10.6: 1, 10.8: 20, 20: 20 }", 2},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        static char keys[128];
+        size_t used = 0;
+        /* Times as seconds: a frame is a second. */
+        for (const char *c = cases[i].keys; *c; c++) {
+            if (*c == ':') used += (size_t)sprintf(keys + used, " s");
+            keys[used++] = *c;
+        }
+        keys[used] = '\0';
+        char text[512];
+        snprintf(text, sizeof text,
+                 "zoetrope: 1\nfilm: { duration: 20 s, rate: 1, shutter: %s }\ncamera: { "
+                 "position: [0, 0, 5] }\nlights: [ambient: {}]\nobjects:\n  - sphere: { "
+                 "center: [0, 0, 0], radius: { "
+                 "keys: %s }, material: {} }\n",
+                 cases[i].shutter, keys);
+        static told t;
+        zt_animation *animation;
+        assert_int_equal(read_told(&t, &animation, text), ZT_OK);
+        zt_animation_free(&animation);
+        if (t.warning_count != cases[i].warning_count)
+            fail_msg("%s, %s: %s", cases[i].shutter, keys, t.lines);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shutter),
         cmocka_unit_test(samples),
         cmocka_unit_test(filters_and_seeds),
         cmocka_unit_test(overrides),
+        cmocka_unit_test(what_a_frame_shows),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -41,6 +41,12 @@ static void outside(const doubter *d) {
                  when(d, after, &room), end_s);
 }
 
+/* Whether the shutter is open for any frame at a time from one to another, in frames. */
+static bool is_seen(const zt_film *film, double from, double to) {
+    const double nearly = 1e-3;
+    return ceil(from - film->shutter.close - nearly) <= to - film->shutter.open + nearly;
+}
+
 /* Keys that no frame meets. Told of the first. */
 static void between_frames(const doubter *d) {
     const double nearly = 1e-3, far = 1e15;
@@ -48,7 +54,9 @@ static void between_frames(const doubter *d) {
     zt_shown room;
     for (int32_t k = 0; k < d->keys->count; k++) {
         double frame = d->curve->times[k] * rate;
-        if (fabs(frame) > far || fabs(frame - round(frame)) <= nearly) continue;
+        if (fabs(frame) > far || fabs(frame - round(frame)) <= nearly ||
+            is_seen(d->film, frame, frame))
+            continue;
         zt_doubt(d->mistakes, place(d, k),
                  "the key at \"%s\" is between the frames %.0f and %.0f: none shows it",
                  when(d, k, &room), floor(frame), ceil(frame));
@@ -56,12 +64,14 @@ static void between_frames(const doubter *d) {
     }
 }
 
-/* Two keys with no frame between them, and more than half of all the movement. */
+/* Two keys with no frame between them, and more than half of all the movement; what is blurred
+ * is meant. */
 static void within_a_frame(const doubter *d, int32_t k) {
     const zt_curve *curve = d->curve;
     double rate = (double)d->film->rate.num / d->film->rate.den;
-    double frames = (curve->times[k + 1] - curve->times[k]) * rate;
+    double from = curve->times[k] * rate, to = curve->times[k + 1] * rate, frames = to - from;
     if (frames > 0.999 || d->keys->keys[k].kind == ZT_CURVE_HOLD) return;
+    if (d->film->shutter.close > d->film->shutter.open && is_seen(d->film, from, to)) return;
     const double *a = curve->points + (int64_t)k * curve->point_width;
     bool large = false;
     for (int32_t c = 0; c < curve->point_width; c++)
