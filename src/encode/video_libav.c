@@ -8,6 +8,8 @@
 
 #include <libavutil/log.h>
 
+#include "base/text.h"
+
 /* There is one callback for the whole process. */
 static thread_local char complaint[256];
 
@@ -30,6 +32,8 @@ void zt_libav_listen(void) {
     call_once(&listening_once, listen);
     *complaint = '\0';
 }
+
+char *zt_video_url(const char *path) { return zt_text_print("file:%s", path); }
 
 const char *zt_libav_complaint(void) { return complaint; }
 

@@ -27,6 +27,10 @@ zt_status zt_libav_refuse(const zt_video_ear *ear, int error);
 /* What libav last complained of in this thread; "" for nothing. */
 const char *zt_libav_complaint(void);
 
+/* A file's name as libav takes it: never for a protocol. Of the caller to free; NULL when out
+ * of memory. */
+char *zt_video_url(const char *path);
+
 /* Hands a failure of libav up as a status, after telling it. */
 #define AV_TRY(ear, call)                                                                      \
     do {                                                                                       \

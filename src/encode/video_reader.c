@@ -1,8 +1,9 @@
 #include "encode/video_reader.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
-#include "encode/video_writer.h"
+#include "encode/video_libav.h"
 
 static int open_file(zt_video_reader *r, const char *path) {
     char *url = zt_video_url(path);

@@ -6,13 +6,14 @@
 #include <libavutil/audio_fifo.h>
 #include <libswresample/swresample.h>
 
-#include "encode/video_writer.h"
+#include "encode/video_libav.h"
 
 enum { BITS_A_CHANNEL = 96000, CHANNELS_MAX = 2, SAMPLE_RATE = 48000, PIECE = 1024 };
 
 struct zt_video_sound {
     const char *path;
     AVFormatContext *source, *into;
+    const zt_container *kind; /* of `into` */
     AVStream *from, *to;
     AVPacket *packet;
     bool ended;   /* nothing more comes from the source */
@@ -130,6 +131,7 @@ zt_status zt_video_sound_open(zt_video_sound **sound, const char *path, AVFormat
     if (!s) return ZT_EMEMORY;
     s->path = path;
     s->into = into;
+    s->kind = kind;
     zt_status status = open_all(s, kind, ear);
     if (status == ZT_OK)
         *sound = s;
@@ -159,6 +161,13 @@ static zt_status write_packet(zt_video_sound *s, AVRational time_base,
     s->packet->stream_index = s->to->index;
     s->packet->pos = -1;
     av_packet_rescale_ts(s->packet, time_base, s->to->time_base);
+    if (s->kind->ticks_a_second) { /* Matroska's times count what the encoder puts before */
+        const AVCodecParameters *p = s->to->codecpar;
+        int64_t padding =
+            av_rescale_q(p->initial_padding, (AVRational){1, p->sample_rate}, s->to->time_base);
+        s->packet->pts += padding;
+        s->packet->dts += padding;
+    }
     AV_TRY(ear, av_interleaved_write_frame(s->into, s->packet));
     return ZT_OK;
 }

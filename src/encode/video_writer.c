@@ -7,8 +7,6 @@
 
 enum { GOP_S = 2, GOP_FRAMES_MAX = 250, TIMESCALE_MIN = 10000 };
 
-char *zt_video_url(const char *path) { return zt_text_print("file:%s", path); }
-
 /* A key picture every two seconds, and no picture refers beyond it: films can be cut there. */
 static int gop_frames(AVRational rate) {
     int64_t frames = (int64_t)GOP_S * rate.num / rate.den;
@@ -39,21 +37,28 @@ static zt_status open_encoder(zt_video_writer *w, const zt_video_choice *choice,
     return ZT_OK;
 }
 
-/* What the file says of itself, where its kind holds that. Of QuickTime's own tags, only that
- * of the software fits the settings. */
+/* How the film was made, in words. */
+enum { SETTINGS_MAX = 512 };
+
+static void describe(char text[SETTINGS_MAX], const zt_video_choice *choice,
+                     const zt_output_format *format) {
+    char how[256];
+    zt_video_describe(how, sizeof how, choice);
+    snprintf(text, SETTINGS_MAX, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s", how,
+             format->width, format->height, format->rate.num, format->rate.den,
+             format->view == ZT_VIEW_RAW ? "raw" : "srgb");
+}
+
+/* What the file says of itself, where its kind holds that. */
 static zt_status write_metadata(zt_video_writer *w, const zt_video_choice *choice,
                                 const zt_output_format *format, const zt_video_ear *ear) {
-    char how[256], settings[512];
-    zt_video_describe(how, sizeof how, choice);
-    snprintf(settings, sizeof settings, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s",
-             how, format->width, format->height, format->rate.num, format->rate.den,
-             format->view == ZT_VIEW_RAW ? "raw" : "srgb");
+    char settings[SETTINGS_MAX];
+    describe(settings, choice, format);
     const struct {
         const char *name, *value;
     } tags[] = {{"title", zt_wish_value(choice->options, "title")},
                 {"comment", zt_wish_value(choice->options, "comment")},
-                {"description", settings},
-                {"encoder", settings}};
+                {"description", settings}};
     for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
         if (tags[i].value)
             AV_TRY(ear, av_dict_set(&w->container->metadata, tags[i].name, tags[i].value, 0));
@@ -89,6 +94,8 @@ static zt_status open_file(zt_video_writer *w, const char *path, const zt_contai
     free(url);
     AV_TRY(ear, error);
     w->container->flags |= AVFMT_FLAG_BITEXACT; /* nothing random, no versions */
+    /* What an encoder of sound puts before its beginning does not move the pictures. */
+    w->container->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
     return ZT_OK;
 }
 
@@ -112,6 +119,10 @@ zt_status zt_video_writer_open(zt_video_writer *w, const char *path,
         ZT_TRY(zt_video_sound_open(&w->sound, sound, w->container, choice->container, ear));
     ZT_TRY(write_metadata(w, choice, format, ear));
     AV_TRY(ear, write_header(w, choice->container));
+    /* QuickTime's tag for the software. The head leaves it out; the end writes it. */
+    AVDictionary **tags = &w->container->metadata;
+    const AVDictionaryEntry *settings = av_dict_get(*tags, "description", NULL, 0);
+    if (settings) AV_TRY(ear, av_dict_set(tags, "encoder", settings->value, 0));
     return ZT_OK;
 }
 

@@ -33,8 +33,4 @@ zt_status zt_video_writer_finish(zt_video_writer *writer, const zt_video_ear *ea
 /* Closes what is open, finished or not. */
 void zt_video_writer_close(zt_video_writer *writer);
 
-/* A file's name as libav takes it: never for a protocol. Of the caller to free; NULL when out
- * of memory. */
-char *zt_video_url(const char *path);
-
 #endif
