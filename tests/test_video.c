@@ -1,7 +1,6 @@
 /* Movies: what a player finds in the file is what was sent. Read again with libavformat and
  * libavcodec; the boxes of the container and the colours are read here, without them. */
 #include <inttypes.h>
-#include <math.h>
 #include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,101 +8,10 @@
 
 #include <cmocka.h>
 
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/pixdesc.h>
-
 #include "files.h"
-#include <zoetrope/output.h>
-
-enum { FRAMES_MAX = 512 };
+#include "movies.h"
 
 static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0};
-
-static zt_output *open_movie_by(const char *path, const zt_output_format *format,
-                                const zt_output_option *options) {
-    heard h;
-    zt_output *output;
-    if (zt_output_open(&output, path, format, options, listener_of(&h)) != ZT_OK)
-        fail_msg("%s", h.text);
-    return output;
-}
-
-static zt_output *open_movie(const char *path, const zt_output_format *format) {
-    return open_movie_by(path, format, NULL);
-}
-
-/* Frames 7, 8, .. of moving pictures: that a film begins elsewhere does not show in the movie.
- */
-static void write_movie(const char *path, const zt_output_format *format, int frame_count) {
-    zt_output *output = open_movie(path, format);
-    for (int f = 0; f < frame_count; f++) {
-        zt_image *image = picture(format->width, format->height, f);
-        assert_int_equal(zt_output_write(output, image, f + 7), ZT_OK);
-        zt_image_free(&image);
-    }
-    assert_int_equal(zt_output_close(&output), ZT_OK);
-    assert_null(output);
-}
-
-/* A file opened for reading: its packets in the order of the file, and one decoder. */
-typedef struct film {
-    AVFormatContext *container;
-    AVStream *stream;
-    AVPacket *packets[FRAMES_MAX];
-    int packet_count;
-} film;
-
-static film film_open(const char *path) {
-    film m = {0};
-    assert_int_equal(avformat_open_input(&m.container, path, NULL, NULL), 0);
-    assert_true(avformat_find_stream_info(m.container, NULL) >= 0);
-    assert_int_equal(m.container->nb_streams, 1);
-    m.stream = m.container->streams[0];
-    AVPacket *packet = av_packet_alloc();
-    while (av_read_frame(m.container, packet) >= 0) {
-        assert_true(m.packet_count < FRAMES_MAX);
-        m.packets[m.packet_count++] = packet;
-        packet = av_packet_alloc();
-    }
-    av_packet_free(&packet);
-    return m;
-}
-
-static void film_close(film *m) {
-    for (int i = 0; i < m->packet_count; i++) av_packet_free(&m->packets[i]);
-    avformat_close_input(&m->container);
-}
-
-/* Decodes packets first .. last - 1 by a decoder that has seen nothing else. The frames are the
- * caller's. */
-static int decode(const film *m, int first, int last, AVFrame *frames[FRAMES_MAX]) {
-    const AVCodec *codec = avcodec_find_decoder(m->stream->codecpar->codec_id);
-    AVCodecContext *decoder = avcodec_alloc_context3(codec);
-    assert_int_equal(avcodec_parameters_to_context(decoder, m->stream->codecpar), 0);
-    decoder->err_recognition = AV_EF_EXPLODE;
-    decoder->thread_count = 1;
-    assert_int_equal(avcodec_open2(decoder, codec, NULL), 0);
-    int frame_count = 0;
-    for (int p = first; p <= last; p++) {
-        assert_int_equal(avcodec_send_packet(decoder, p < last ? m->packets[p] : NULL), 0);
-        for (;;) {
-            AVFrame *frame = av_frame_alloc();
-            if (avcodec_receive_frame(decoder, frame) < 0) {
-                av_frame_free(&frame);
-                break;
-            }
-            assert_true(frame_count < FRAMES_MAX);
-            frames[frame_count++] = frame;
-        }
-    }
-    avcodec_free_context(&decoder);
-    return frame_count;
-}
-
-static void free_frames(AVFrame **frames, int count) {
-    for (int i = 0; i < count; i++) av_frame_free(&frames[i]);
-}
 
 /* time_base * ticks == count / rate, as rationals. */
 static void assert_time(int64_t ticks, AVRational time_base, int64_t count, zt_rate rate) {
@@ -277,22 +185,7 @@ static void groups_are_closed(void **state) {
     film_close(&m);
 }
 
-/* Patches of the test card, linear. */
-static const float patches[][3] = {
-    {1, 0, 0},          {0, 1, 0},       {0, 0, 1},       {1, 1, 0},          {0, 1, 1},
-    {1, 0, 1},          {1, 1, 1},       {0, 0, 0},       {.02f, .02f, .02f}, {.1f, .1f, .1f},
-    {.18f, .18f, .18f}, {.4f, .4f, .4f}, {.7f, .7f, .7f}, {.6f, .3f, .2f},    {.9f, .6f, .45f},
-    {.2f, .09f, .05f},  {.5f, 0, 0},     {0, .2f, 0},     {0, 0, .3f},        {.05f, 0, .2f},
-    {.8f, .5f, 0},      {0, .5f, .8f},   {.3f, .9f, .1f}, {3, -1, .5f},
-};
-enum { PATCH_COUNT = sizeof patches / sizeof *patches, PATCH = 64, COLUMNS = 6 };
-
-/* What a display gets for a linear value, by the definition of the view: one of 256 numbers. */
-static double display_value(double linear, zt_view view) {
-    linear = fmin(1, fmax(0, linear));
-    double srgb = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-    return floor(255 * (view == ZT_VIEW_SRGB ? srgb : linear) + 0.5);
-}
+enum { PATCH = 64 };
 
 /* R'G'B' of 0..255 from a yuv420p pixel, by ITU-R BT.709-6, items 3.2 to 3.5. */
 static void yuv_to_rgb(double rgb[3], const AVFrame *frame, int x, int y) {
@@ -313,9 +206,10 @@ static double worst_difference(const AVFrame *frame, zt_view view) {
         for (int y = margin; y < PATCH - margin; y++)
             for (int x = margin; x < PATCH - margin; x++) {
                 double rgb[3];
-                yuv_to_rgb(rgb, frame, p % COLUMNS * PATCH + x, p / COLUMNS * PATCH + y);
+                yuv_to_rgb(rgb, frame, p % PATCH_COLUMNS * PATCH + x,
+                           p / PATCH_COLUMNS * PATCH + y);
                 for (int c = 0; c < 3; c++) {
-                    double sent = display_value((double)patches[p][c], view);
+                    double sent = floor(255 * display_value((double)patches[p][c], view) + 0.5);
                     worst = fmax(worst, fabs(rgb[c] - sent));
                 }
             }
@@ -325,15 +219,11 @@ static double worst_difference(const AVFrame *frame, zt_view view) {
 /* The colours of a test card arrive within 2 of 255, in key frames and all others. */
 static void colours(void **state) {
     (void)state;
-    const int frame_count = 30, width = COLUMNS * PATCH;
+    const int frame_count = 30, width = PATCH_COLUMNS * PATCH;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {width, PATCH_COUNT / COLUMNS * PATCH, {24, 1}, view, 0};
-        zt_image *card;
-        assert_int_equal(zt_image_create(&card, format.width, format.height), ZT_OK);
-        for (int i = 0; i < format.width * format.height; i++) {
-            int p = i / width / PATCH * COLUMNS + i % width / PATCH;
-            memcpy(card->pixels + 4 * (size_t)i, patches[p], sizeof patches[p]);
-        }
+        zt_output_format format = {
+            width, PATCH_COUNT / PATCH_COLUMNS * PATCH, {24, 1}, view, 0};
+        zt_image *card = test_card(PATCH);
         zt_output *output = open_movie("card.mp4", &format);
         for (int f = 0; f < frame_count; f++)
             assert_int_equal(zt_output_write(output, card, f), ZT_OK);
