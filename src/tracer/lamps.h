@@ -90,56 +90,58 @@ static LAMP_INLINE double zt_between(double value, double low, double high) {
 /* ---- rectangles -----------------------------------------------------------------------------
  */
 
+/* Below this solid angle roundings begin to show in where zt_sheet_sample takes its places. */
+#define SHEET_LEAST 0x1p-20
+
 /* A rectangle as a point sees it that lies before its front: across the z axis, the point being
  * the origin. Computed in double precision for all. */
 typedef struct zt_sheet {
     double x0, x1, y0, y1, z; /* z > 0 */
-    double solid_angle;
+    double yy0, yy1, zz;      /* squares */
+    double l0, l1, b0, b1;    /* sqrt(y^2 + z^2), and y / l */
+    double cosine, sine;      /* of the sum of the angles between the edges at x0 */
+    double solid_angle;       /* give or take 1e-15 */
 } zt_sheet;
 
-/* The solid angle is that of two triangles (Van Oosterom and Strackee, "The solid angle of a
- * plane triangle", 1983), the tangents of whose halves are volume / rest; right to the last
- * bits of its own, however small. */
+/* Projected onto the unit sphere the edges are great circles, and the solid angle is what the
+ * four angles between them exceed 2 pi by: added up as products of complex numbers. */
 static LAMP_INLINE zt_sheet zt_sheet_of(double x0, double x1, double y0, double y1, double z) {
     double xx0 = x0 * x0, xx1 = x1 * x1, yy0 = y0 * y0, yy1 = y1 * y1, zz = z * z;
-    double x01 = x0 * x1 + zz, y01 = y0 * y1 + zz;
-    double d00 = sqrt(xx0 + yy0 + zz), d01 = sqrt(xx0 + yy1 + zz);
-    double d10 = sqrt(xx1 + yy0 + zz), d11 = sqrt(xx1 + yy1 + zz);
-    double across = x0 * x1 + y01, volume = (x1 - x0) * (y1 - y0) * z;
-    double rest = d00 * d10 * d11 + (x01 + yy0) * d11 + (xx1 + y01) * d00 + across * d10;
-    double rest2 = d00 * d01 * d11 + (x01 + yy1) * d00 + (xx0 + y01) * d11 + across * d01;
-    double y = volume * (rest + rest2);
-    double angle = zt_angle(rest * rest2 - volume * volume, y > 0 ? y : 0);
-    return (zt_sheet){x0, x1, y0, y1, z, 2 * angle};
+    double a0 = sqrt(xx0 + zz), a1 = sqrt(xx1 + zz), l0 = sqrt(yy0 + zz), l1 = sqrt(yy1 + zz);
+    double b0 = y0 / l0, b1 = y1 / l1, c0 = x0 / a0, c1 = x1 / a1;
+    double cos00 = -c0 * b0, sin00 = z * sqrt(xx0 + yy0 + zz) / (a0 * l0);
+    double cos01 = c0 * b1, sin01 = z * sqrt(xx0 + yy1 + zz) / (a0 * l1);
+    double cos10 = c1 * b0, sin10 = z * sqrt(xx1 + yy0 + zz) / (a1 * l0);
+    double cos11 = -c1 * b1, sin11 = z * sqrt(xx1 + yy1 + zz) / (a1 * l1);
+    double cos0 = cos00 * cos01 - sin00 * sin01, sin0 = sin00 * cos01 + cos00 * sin01;
+    double cos1 = cos10 * cos11 - sin10 * sin11, sin1 = sin10 * cos11 + cos10 * sin11;
+    double cosine = cos0 * cos1 - sin0 * sin1, sine = sin0 * cos1 + cos0 * sin1;
+    double angle = zt_angle(cosine, fabs(sine));
+    bool all = (x0 < -z) & (x1 > z) & (y0 < -z) & (y1 > z); /* then it is not nothing */
+    double rest = sine < 0 ? 6.283185307179586477 - angle : angle;
+    rest = angle > 1e-14 ? rest : all ? 6.283185307179586477 : 0;
+    return (zt_sheet){x0, x1, y0, y1, z, yy0, yy1, zz, l0, l1, b0, b1, cos0, sin0, rest};
 }
 
-/* Below this solid angle roundings begin to show in where zt_sheet_sample takes its places. */
-#define SHEET_LEAST 0x1p-20
-
 /* A place on it, all directions to it being as probable: Urena, Fajardo and King, "An
- * area-preserving parametrization for spherical rectangles", EGSR 2013; with sums of angles as
- * products of complex numbers, and without the differences of nearly equal numbers. */
+ * area-preserving parametrization for spherical rectangles", EGSR 2013, without the differences
+ * of nearly equal numbers. */
 static LAMP_INLINE void zt_sheet_sample(double *x, double *y, const zt_sheet *s, double u,
                                         double v) {
-    double zz = s->z * s->z, xx0 = s->x0 * s->x0, yy0 = s->y0 * s->y0, yy1 = s->y1 * s->y1;
-    double a = sqrt(xx0 + zz), l0 = sqrt(yy0 + zz), l1 = sqrt(yy1 + zz);
-    double b0 = s->y0 / l0, b1 = s->y1 / l1, c0 = s->x0 / a;
-    /* The angles at the corners with x0. */
-    double cos0 = -c0 * b0, sin0 = s->z * sqrt(xx0 + yy0 + zz) / (a * l0);
-    double cos1 = c0 * b1, sin1 = s->z * sqrt(xx0 + yy1 + zz) / (a * l1);
-    double cos01 = cos0 * cos1 - sin0 * sin1, sin01 = sin0 * cos1 + cos0 * sin1;
-    /* Those of a rectangle's other two that has u of the solid angle, from x0 to x. */
+    /* The sum of the other two angles of the part from x0 to x, which has u of the whole. */
     double sin_u, cos_u;
     zt_turn(&sin_u, &cos_u, u * s->solid_angle * 0.15915494309189533577);
-    double cosine = cos01 * cos_u + sin01 * sin_u, sine = cos01 * sin_u - sin01 * cos_u;
-    double low = s->y0 * l1, high = s->y1 * l0; /* b1 - b0 is (high - low) / (l0 l1) */
-    double wide = low * high > 0 ? zz * (yy1 - yy0) / (high + low) : high - low;
-    wide /= l0 * l1;
+    double cosine = s->cosine * cos_u + s->sine * sin_u;
+    double sine = s->cosine * sin_u - s->sine * cos_u;
+    double low = s->y0 * s->l1, high = s->y1 * s->l0; /* b1 - b0 is (high - low) / (l0 l1) */
+    double wide = low * high > 0 ? s->zz * (s->yy1 - s->yy0) / (high + low) : high - low;
+    wide /= s->l0 * s->l1;
     double more = cosine < 0 ? sine * sine / (1 - cosine) : 1 + cosine;
-    double c = -sine / sqrt(wide * wide + 2 * b0 * b1 * more);
+    double c = -sine / sqrt(wide * wide + 2 * s->b0 * s->b1 * more);
     *x = zt_between(s->z * c / sqrt(1 - c * c), s->x0, s->x1);
-    double dd = *x * *x + zz;
-    double t0 = s->y0 / sqrt(dd + yy0), t1 = s->y1 / sqrt(dd + yy1), t = t0 + v * (t1 - t0);
+    double dd = *x * *x + s->zz;
+    double t0 = s->y0 / sqrt(dd + s->yy0), t1 = s->y1 / sqrt(dd + s->yy1),
+           t = t0 + v * (t1 - t0);
     *y = zt_between(t * sqrt(dd / (1 - t * t)), s->y0, s->y1);
 }
 
