@@ -97,8 +97,7 @@ static void say_off(char *text, size_t size, const zt_division *d,
         snprintf(text, size, "%s is at most %.2g px off its way", name,
                  d->off * ZT_CHORD_PIXELS);
     else
-        snprintf(text, size, "%s looks at most %.2g %% different", name,
-                 d->off * ZT_CHORD_SHARE * 100);
+        snprintf(text, size, "%s is at most %.2g %% off", name, d->off * ZT_CHORD_SHARE * 100);
 }
 
 static void say_motion(char *text, size_t size, const zt_division *d,

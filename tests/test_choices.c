@@ -1,4 +1,5 @@
-/* In which precision the frames of a film are rendered, and what is said of it. */
+/* What is chosen for the frames of a film, and what is said of it: in which precision they are
+ * rendered, and at how many moments they are looked at. */
 #include <glob.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -34,6 +35,24 @@ static zt_animation *film_of(const char *lines, int reflections) {
                         "  mirror: { color: [1, 1, 1], reflectivity: 0.9 }\n"
                         "%s",
                         reflections, lines) > 0);
+    close(file);
+    zt_animation *animation = read_film(path);
+    unlink(path);
+    return animation;
+}
+
+/* The same with a camera, and objects; `film` are words of the film. */
+static zt_animation *film_with(const char *film, const char *objects) {
+    char path[] = "/tmp/zoetrope-choices-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    assert_true(dprintf(file,
+                        "zoetrope: 1\n"
+                        "film: { size: [96, 54], rate: 1, duration: 8, %s }\n"
+                        "camera: { position: [0, 0, 10] }\n"
+                        "lights: [ambient: {}]\n"
+                        "objects:\n%s",
+                        film, objects) > 0);
     close(file);
     zt_animation *animation = read_film(path);
     unlink(path);
@@ -192,12 +211,86 @@ static void ordinary_films(void **state) {
     globfree(&films);
 }
 
+/* How the shutter's opening is divided, and what for. */
+static void moments(void **state) {
+    (void)state;
+    const struct {
+        const char *film, *lines, *text;
+        int moment_count; /* 0: many */
+    } cases[] = {
+        {"shutter: 0", "  - sphere: { center: [0, 0, 0], radius: 1, material: {} }\n", "", 1},
+        {"shutter: 180", "  - sphere: { center: [0, 0, 0], radius: 1, material: {} }\n",
+         "180 degrees open: nothing moves", 1},
+        {"shutter: { angle: 90, phase: -45 }",
+         "  - sphere: { center: { curve: linear, keys: { 0: [0, 0, 0], 7: [1, 0, 0] } }, "
+         "radius: "
+         "1, material: {} }\n",
+         "90 degrees open: 2 moments; ", 2},
+        {"shutter: 360",
+         "  - group:\n      name: wheel\n"
+         "      rotation: { curve: linear, in: turns, keys: { 0: [0, 0, 0], 8: [0, 0, 360] } "
+         "}\n"
+         "      objects:\n"
+         "        - box: { center: [1, 0, 0], size: 1, material: {} }\n",
+         "360 degrees open: 3 moments, because of wheel; wheel is at most 0.2", 3},
+        {"shutter: 360",
+         "  - sphere: { center: [0, 0, 0], radius: 1, material: { color: { curve: hold, keys: "
+         "{ 0: "
+         "red, 0.3 s: blue } } } }\n",
+         "360 degrees open: 4 moments; all goes straight on; material 1.color changes at once",
+         4},
+        {"shutter: 360",
+         "  - sphere: { center: [0, 0, 0], radius: 1, material: { reflectivity: \"= 0.5 + 0.5 "
+         "* "
+         "sin(6 * t)\" } }\n",
+         "because of material 1; material 1 is at most 0.1", 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        zt_animation *animation = film_with(cases[i].film, cases[i].lines);
+        zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, NULL);
+        zt_frame_choices choice = choice_of(renderer, 0);
+        if (cases[i].moment_count > 0)
+            assert_int_equal(choice.moment_count, cases[i].moment_count);
+        else
+            assert_in_range(choice.moment_count, 20, 100);
+        if (!strstr(choice.motion_text, cases[i].text) ||
+            (!*cases[i].text && *choice.motion_text))
+            fail_msg("\"%s\" is not in: %s", cases[i].text, choice.motion_text);
+        zt_renderer_close(&renderer);
+        zt_animation_free(&animation);
+    }
+}
+
+/* What is too fast to be followed is told, once, and explained. */
+static void too_fast(void **state) {
+    (void)state;
+    zt_animation *animation = film_with(
+        "shutter: 180", "  - sphere: { name: fly, center: \"= {sin(1e5 * t), 0, 0}\", "
+                        "radius: 0.1, material: {} }\n");
+    static told heard;
+    heard = (told){0};
+    zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, &heard);
+    zt_frame_choices choice = choice_of(renderer, 0);
+    assert_true(choice.moment_count <= 4097);
+    assert_non_null(strstr(choice.motion_text, "because of fly"));
+    assert_non_null(strstr(choice.motion_text, "more than can be met"));
+    zt_image *image;
+    assert_int_equal(zt_image_create(&image, 96, 54), ZT_OK);
+    for (int64_t frame = 0; frame < 2; frame++)
+        assert_int_equal(zt_renderer_frame(renderer, frame, image, NULL), ZT_OK);
+    assert_int_equal(heard.warning_count, 1);
+    assert_non_null(strstr(heard.lines, "frame 0 asks for more than its "));
+    assert_non_null(strstr(heard.lines, " moments: fly is at most "));
+    zt_image_free(&image);
+    zt_renderer_close(&renderer);
+    zt_animation_free(&animation);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(by_frame),
-        cmocka_unit_test(reasons),
-        cmocka_unit_test(warned_once),
-        cmocka_unit_test(ordinary_films),
+        cmocka_unit_test(by_frame),    cmocka_unit_test(reasons),
+        cmocka_unit_test(warned_once), cmocka_unit_test(ordinary_films),
+        cmocka_unit_test(moments),     cmocka_unit_test(too_fast),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
