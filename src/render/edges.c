@@ -5,7 +5,9 @@
 
 #include "tracer/isa.h"
 
-enum { EDGE_LEAST = 2, BAND = 16 }; /* an edge's 2^2 samples at least; rows of a task */
+/* Samples at least, as logarithms: where only what is seen differs, and where its color does,
+ * too; and rows of a task. */
+enum { PATH_LEAST = 1, COLOR_LEAST = 2, BAND = 16 };
 
 /* Marks the pixels of a row of which one of the eight neighbours saw something else. Rows above
  * and below the picture are its own. */
@@ -17,11 +19,12 @@ ZT_CLONES static void mark_paths(uint8_t *restrict mark, const uint32_t *restric
         uint32_t differs = (own ^ row[x - 1]) | (own ^ row[x + 1]) | (own ^ above[x - 1]) |
                            (own ^ above[x]) | (own ^ above[x + 1]) | (own ^ below[x - 1]) |
                            (own ^ below[x]) | (own ^ below[x + 1]);
-        mark[x] |= differs ? 1 : 0;
+        mark[x] = differs ? PATH_LEAST : 0;
     }
     for (int x = 0; x<width; x += width> 1 ? width - 1 : 1)
         for (int near = x > 0 ? x - 1 : 0; near <= x + 1 && near < width; near++)
-            mark[x] |= row[near] != row[x] || above[near] != row[x] || below[near] != row[x];
+            if (row[near] != row[x] || above[near] != row[x] || below[near] != row[x])
+                mark[x] = PATH_LEAST;
 }
 
 /* Marks the pixels of a row whose color is off the line between those of their neighbours: a
@@ -30,16 +33,19 @@ ZT_CLONES static void mark_paths(uint8_t *restrict mark, const uint32_t *restric
 ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict above,
                                   const float *restrict row, const float *restrict below,
                                   int width, float allowed) {
-    for (int x = 1; x < width - 1; x++) {
-        const float *own = row + 4 * x, *up = above + 4 * x, *down = below + 4 * x;
-        float most = 0;
-        for (int k = 0; k < 3; k++) {
-            float across = fabsf(own[k - 4] - 2 * own[k] + own[k + 4]);
-            float along = fabsf(up[k] - 2 * own[k] + down[k]);
-            most = across > most ? across : most;
-            most = along > most ? along : most;
+    enum { CHUNK = 256 };
+    int32_t bent[4 * CHUNK];
+    for (int first = 1; first < width - 1; first += CHUNK) {
+        int count = min_int(CHUNK, width - 1 - first);
+        const float *own = row + 4 * first, *up = above + 4 * first, *down = below + 4 * first;
+        for (int i = 0; i < 4 * count; i++) {
+            float across = fabsf(own[i - 4] - 2 * own[i] + own[i + 4]);
+            float along = fabsf(up[i] - 2 * own[i] + down[i]);
+            bent[i] = (across > along ? across : along) > allowed;
         }
-        mark[x] |= most > allowed;
+        for (int i = 0; i < count; i++)
+            mark[first + i] =
+                bent[4 * i] | bent[4 * i + 1] | bent[4 * i + 2] ? COLOR_LEAST : mark[first + i];
     }
 }
 
@@ -48,6 +54,11 @@ typedef struct edges {
     float allowed;
     int reach; /* pixels by which the filter reaches beyond its own */
 } edges;
+
+/* Where the filter stays within the pixel. */
+static void raise_row(uint8_t *restrict least, const uint8_t *restrict edge, int width) {
+    for (int x = 0; x < width; x++) least[x] = least[x] < edge[x] ? edge[x] : least[x];
+}
 
 static void mark_band(void *user, int task, int worker) {
     (void)worker;
@@ -66,6 +77,7 @@ static void mark_band(void *user, int task, int worker) {
         if (y > 0 && y < last)
             mark_colors(mark, pixels + 4 * above, pixels + 4 * row, pixels + 4 * below,
                         canvas->width, e->allowed);
+        if (e->reach == 0) raise_row(canvas->least + row, mark, canvas->width);
     }
 }
 
@@ -77,30 +89,38 @@ static void spread_band(void *user, int task, int worker) {
     int width = canvas->width, reach = e->reach;
     for (int y = task * BAND; y < min_int((task + 1) * BAND, canvas->height); y++) {
         uint8_t *least = canvas->least + zt_canvas_pixel(canvas, 0, y);
-        for (int from = max_int(y - reach, 0); from <= min_int(y + reach, canvas->height - 1);
-             from++) {
-            const uint8_t *mark = canvas->edge + zt_canvas_pixel(canvas, 0, from);
+        int last = min_int(y + reach, canvas->height - 1);
+        for (int from = max_int(y - reach, 0); from <= last; from++) {
+            const uint8_t *edge = canvas->edge + zt_canvas_pixel(canvas, 0, from);
             for (int x = 0; x < width; x++) {
-                bool any = false;
+                uint8_t wanted = least[x];
                 for (int k = max_int(x - reach, 0); k <= min_int(x + reach, width - 1); k++)
-                    any |= mark[k];
-                least[x] = any && least[x] < EDGE_LEAST ? EDGE_LEAST : least[x];
+                    wanted = edge[k] > wanted ? edge[k] : wanted;
+                least[x] = wanted;
             }
         }
     }
 }
 
-/* Blocks of four pixels in a row, of which most want nothing, by their bytes. */
+static bool any_wants(const zt_canvas *canvas, int x, int y, int width, int height) {
+    uint64_t any = 0;
+    for (int row = y; row < y + height; row++) {
+        uint64_t bytes[TILE_SIDE / 8] = {0};
+        memcpy(bytes, canvas->least + zt_canvas_pixel(canvas, x, row), (size_t)width);
+        any |= bytes[0] | bytes[1];
+    }
+    return any;
+}
+
 static void add_tile(zt_canvas *canvas, const zt_frame *f, int x, int y) {
-    for (int i = 0; i < ZT_BATCH; i += 4) {
-        int column = x + f->work->column[i], row = y + f->work->row[i];
-        if (column >= canvas->width || row >= canvas->height) continue;
-        const uint8_t *least = canvas->least + zt_canvas_pixel(canvas, column, row);
-        int count = min_int(4, canvas->width - column);
-        uint32_t bytes = 0;
-        memcpy(&bytes, least, (size_t)count);
-        for (int k = 0; bytes && k < count; k++)
-            if (least[k]) zt_canvas_add(canvas, column + k, row);
+    int width = min_int(TILE_SIDE, canvas->width - x);
+    int height = min_int(TILE_SIDE, canvas->height - y);
+    if (!any_wants(canvas, x, y, width, height)) return;
+    for (int i = 0; i < ZT_BATCH; i++) {
+        int column = f->work->column[i], row = f->work->row[i];
+        if (column < width && row < height &&
+            canvas->least[zt_canvas_pixel(canvas, x + column, y + row)])
+            zt_canvas_add(canvas, x + column, y + row);
     }
 }
 
@@ -110,8 +130,9 @@ void zt_edges_find(zt_frame *f) {
     int bands = (canvas->height + BAND - 1) / BAND;
     edges e = {f, (float)(2 * s->error), (int)ceil((zt_filter_width(s) - 1) / 2)};
     memset(canvas->least, 0, (size_t)canvas->width * (size_t)canvas->height);
+    if (f->job->thin) zt_thin_mark(canvas->least, f->job->thin, e.reach);
     zt_pool_run(f->pool, bands, mark_band, &e);
-    zt_pool_run(f->pool, bands, spread_band, &e);
+    if (e.reach > 0) zt_pool_run(f->pool, bands, spread_band, &e);
     for (int tile = 0; tile < f->tile_count; tile++)
         add_tile(canvas, f, tile % f->tile_columns * TILE_SIDE,
                  tile / f->tile_columns * TILE_SIDE);

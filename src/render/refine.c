@@ -10,8 +10,9 @@
 
 #include "tracer/isa.h"
 
-/* Of pixels that are refined, so many samples at least; rays that a thread takes at a time. */
-enum { EDGE_SAMPLES = 4, PAIR = 2, TOGETHER = 16, TASK_RAYS = 8192 };
+/* Samples of a pixel at least, and so many that rays share a batch with few others; rays that a
+ * thread takes at a time. */
+enum { PAIR = 2, TOGETHER = 16, TASK_RAYS = 8192 };
 
 /* What all slots of a round have in common. */
 typedef struct round_job {
@@ -92,6 +93,34 @@ static void look_for_strange(zt_canvas *canvas, const int32_t *slots, const uint
     }
 }
 
+/* Exchanges rows, of `width` numbers of 32 bits, and columns. */
+static void turn(void *numbers, int width, int height) {
+    enum { SIZE = 4 };
+    static_assert(sizeof(float) == SIZE, "a number is one of 32 bits");
+    char *own = numbers, turned[SIZE * ZT_BATCH];
+    for (int i = 0; i < width; i++)
+        for (int k = 0; k < height; k++)
+            memcpy(turned + SIZE * (i * height + k), own + SIZE * (k * width + i), SIZE);
+    memcpy(own, turned, (size_t)width * (size_t)height * SIZE);
+}
+
+/* Traces `now` samples of each of `count` pixels: of those at edges, which have few others
+ * nearby, with the samples of each side by side, so that rays that travel together stay close.
+ */
+static void trace(zt_frame *f, zt_render_thread *own, int count, int now) {
+    if (f->at_edges) {
+        turn(own->places.x, count, now);
+        turn(own->places.y, count, now);
+    }
+    zt_frame_trace(f, own, now * count);
+    if (f->at_edges) {
+        turn(own->light.r, now, count);
+        turn(own->light.g, now, count);
+        turn(own->light.b, now, count);
+        turn(own->light.path, now, count);
+    }
+}
+
 /* Samples number asked + done and on, `now` of each of the listed slots. */
 static void take_samples(const round_job *j, zt_render_thread *own, const int32_t *slots,
                          int count, int done, int now) {
@@ -100,8 +129,8 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
     for (int k = 0; k < now; k++)
         zt_samples_take(&own->places, &own->rays, f->job, own->column, own->row, k * count,
                         count, j->asked + done + k);
-    zt_frame_trace(f, own, now * count);
-    if (f->is_first) look_for_strange(&f->work->canvas, slots, own->light.path, now, count);
+    trace(f, own, count, now);
+    if (f->at_edges) look_for_strange(&f->work->canvas, slots, own->light.path, now, count);
     for (int k = 0; k < now; k++) {
         int half = done + k >= first_half;
         if (j->is_signed)
@@ -150,7 +179,7 @@ static void sample_group(const round_job *j, zt_render_thread *own, const int32_
     zt_samples_key(&own->places, j->frame->job, own->column, own->row, count);
     memset(own->sums.positive, 0, sizeof own->sums.positive);
     if (j->is_signed) memset(own->sums.negative, 0, sizeof own->sums.negative);
-    own->rays.wants_path = j->frame->is_first;
+    own->rays.wants_path = j->frame->at_edges;
     int together = ZT_BATCH / count;
     for (int done = 0; done < j->more; done += together) {
         if (zt_frame_stopped(j->frame)) return;
@@ -183,7 +212,7 @@ static void decide_task(void *user, int task, int worker) {
     for (int32_t i = task * DECISIONS; i < end; i++) {
         const zt_slot *s = &canvas->slots[canvas->round[i]];
         int least =
-            f->is_first ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
+            f->at_edges ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
         canvas->goes_on[i] =
             s->asked < f->job->sampling.max &&
             (s->asked < least || zt_canvas_error(canvas, s->column, s->row) > j->wanted);
@@ -239,7 +268,7 @@ static round_job plan_round(zt_frame *f, int32_t asked) {
                    .asked = asked,
                    .wanted = (float)(s->error * s->error),
                    .is_signed = zt_warp_is_signed(f->job->warp)};
-    int first = max_int(s->min, s->edges ? EDGE_SAMPLES : PAIR);
+    int first = max_int(s->min, PAIR);
     j.more = min_int(j.asked ? j.asked : first, s->max - j.asked);
     j.group = ZT_BATCH / min_int(j.more, TOGETHER);
     j.task_slots = j.group * max_int(1, TASK_RAYS / (j.group * j.more));
@@ -288,7 +317,7 @@ zt_status zt_refine(zt_frame *f) {
         run(f->pool, task_count(canvas->round_count, j.task_slots), sample_task, &j);
         if (f->stopped) return ZT_ESTOPPED;
         run(f->pool, task_count(canvas->round_count, DECISIONS), decide_task, &j);
-        end_round(canvas, j.asked + j.more, f->is_first);
+        end_round(canvas, j.asked + j.more, f->at_edges);
     }
     run(f->pool, task_count(canvas->slot_count, DECISIONS), write_task, &j);
     write_channels(canvas, f->image);

@@ -64,9 +64,9 @@ static int list_pixels(zt_render_thread *own, const zt_frame *f, tile area, int 
             count += work->column[i] < area.width && work->row[i] < area.height;
         }
     }
-    if (job->sampling.max > 1 || job->scene->moves || job->scene->random ||
-        zt_lens_has_aperture(job->lens) || zt_lens_moves(job->lens))
-        zt_samples_key(&own->places, job, column, row, count);
+    bool keys = job->sampling.max > 1 || job->scene->moves || job->scene->random ||
+                zt_lens_has_aperture(job->lens) || zt_lens_moves(job->lens);
+    if (keys && !f->at_edges) zt_samples_key(&own->places, job, column, row, count);
     return count;
 }
 
@@ -120,27 +120,30 @@ ZT_CLONES static void fill_pixels(float *restrict pixels, int width,
 }
 
 static void fill_paths(uint32_t *restrict paths, int width, const uint32_t *restrict path,
-                       const int32_t *restrict column, const int32_t *restrict row, int count) {
-    for (int i = 0; i < count; i++)
-        paths[(size_t)row[i] * (size_t)width + (size_t)column[i]] = path[i];
+                       const int32_t *restrict column, const int32_t *restrict row, int count,
+                       bool whole) {
+    int run = whole ? 4 : 1;
+    for (int i = 0; i < count; i += run)
+        memcpy(paths + (size_t)row[i] * (size_t)width + (size_t)column[i], path + i,
+               whole ? 4 * sizeof *path : sizeof *path);
 }
 
 /* All samples of some pixels of a tile, as many of each in a batch as there is room for. */
 static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int first, int most) {
     const zt_render_job *job = f->job;
-    int samples = f->is_first ? 1 : job->sampling.max;
+    int samples = f->at_edges ? 1 : job->sampling.max;
     int count = list_pixels(own, f, area, first, most);
     if (count == 0) return true;
     memset(&own->sum, 0, offsetof(zt_radiance, path));
     memset(own->taken, 0, sizeof own->taken);
-    own->rays.wants_path = f->is_first;
+    own->rays.wants_path = f->at_edges;
     int together = ZT_BATCH / count;
     for (int done = 0; done < samples; done += together) {
         if (job->stopped && job->stopped(job->user)) return false;
         int now = min_int(together, samples - done);
         for (int k = 0; k < now; k++)
             zt_samples_take(&own->places, &own->rays, job, own->column, own->row, k * count,
-                            count, f->is_first ? ZT_SAMPLE_MIDDLE : done + k);
+                            count, f->at_edges ? ZT_SAMPLE_MIDDLE : done + k);
         zt_frame_trace(f, own, now * count);
         for (int k = 0; k < now; k++)
             own->count.left_out +=
@@ -149,9 +152,9 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     average(&own->sum, own->taken, count);
     fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
                 count == most);
-    if (f->is_first)
-        fill_paths(f->work->canvas.path, f->image->width, own->light.path, own->column, own->row,
-                   count);
+    if (f->at_edges)
+        fill_paths(f->work->canvas.path, f->image->width, own->light.path, own->column,
+                   own->row, count, count == most);
     return true;
 }
 
@@ -163,7 +166,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
                  min_int(TILE_SIDE, f->image->height - y)};
-    int most = f->is_first ? ZT_BATCH : block_size(f->job->sampling.max);
+    int most = f->at_edges ? ZT_BATCH : block_size(f->job->sampling.max);
     for (int first = 0; first < ZT_BATCH; first += most)
         if (!render_block(f, &f->work->threads[worker], area, first, most)) return false;
     return true;
@@ -217,9 +220,10 @@ static zt_status render_all(zt_frame *f) {
         return render_tiles(f) ? ZT_OK : ZT_ESTOPPED;
     }
     zt_canvas *canvas = &f->work->canvas;
-    ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height, zt_warp_is_signed(job->warp)));
-    f->is_first = s->edges && can_tell_edges(job);
-    if (f->is_first) {
+    ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height,
+                          zt_warp_is_signed(job->warp)));
+    f->at_edges = s->edges && can_tell_edges(job);
+    if (f->at_edges) {
         if (!render_tiles(f)) return ZT_ESTOPPED;
         zt_edges_find(f);
     } else {

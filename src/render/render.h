@@ -12,6 +12,7 @@
 #include "base/pool.h"
 #include "render/filter.h"
 #include "render/lens.h"
+#include "render/thin.h"
 #include "tracer/kernel.h"
 
 /* What each thread works with, and the canvas; made once in a run. Its threads' memory is the
@@ -25,6 +26,8 @@ typedef struct zt_render_job {
     const zt_lens *lens;
     zt_sampling sampling;
     const zt_warp *warp; /* the sampling's filter made ready */
+    const zt_thin
+        *thin; /* where edges are looked for; or NULL: thin things are missed by luck */
     /* What random numbers are keyed by: where in their pixels samples are taken, and all else.
      */
     uint64_t place_key, frame_key;

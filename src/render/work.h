@@ -42,7 +42,7 @@ typedef struct zt_frame {
     zt_pool *pool;
     int tile_columns, tile_count;
     int run;       /* tiles that a thread takes at a time */
-    bool is_first; /* of more to come: one sample in the middle of each pixel, with its path */
+    bool at_edges; /* first one sample in the middle of each pixel, then more at edges alone */
     atomic_bool stopped;
 } zt_frame;
 

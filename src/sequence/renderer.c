@@ -84,6 +84,9 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
         zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height, &r->frame));
     t->job = (zt_render_job){.scene = &t->ready, .lens = t->lens, .sampling = r->sampling};
     ZT_TRY(zt_warp_prepare(&t->job.warp, &r->sampling, &r->frame));
+    if (r->sampling.edges)
+        ZT_TRY(zt_thin_prepare(&t->job.thin, &t->exposure, r->format.width, r->format.height,
+                               &r->frame));
     zt_shutter_keys(&t->job.place_key, &t->job.frame_key, &t->exposure, &r->sampling);
     r->cost =
         (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
