@@ -120,8 +120,10 @@ static zt_replay_lamp look_at_lamp(const replaying *p, const zt_probe *at, int32
     bool looked = vec3_max_abs(vec3_sub(point, at->mirror_origin)) > 0;
     bool told = p->scene->light_count <= 64, lit = told && at->lit >> light & 1;
     zt_replay_lamp lamp = {.name = light_name(p, light), .hider_triangle = -1};
-    set_point(lamp.point, p, looked ? point : middle);
-    if (looked && !lit && p->scene->lights[light].shadows) find_hider(&lamp, p, at, point);
+    const zt_light *l = &p->scene->lights[light];
+    bool is_point = l->kind == ZT_LIGHT_POINT && l->radius == 0;
+    set_point(lamp.point, p, looked && !is_point ? point : middle);
+    if (looked && !lit && l->shadows) find_hider(&lamp, p, at, point);
     if (lit || (looked && !told && !lamp.hider))
         lamp.gift = ZT_GIFT_LIGHT;
     else if (lamp.hider)
