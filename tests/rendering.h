@@ -10,9 +10,10 @@ static const vec3 white = {1, 1, 1};
 /* Which of them all of the following render in. */
 static zt_precision precision = ZT_PRECISION_AUTO;
 
-/* Renders a scene to an image that the caller frees; *left_out samples were not finite. */
-static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, int width,
-                                           int height, int samples, int threads) {
+/* Renders a scene to an image that the caller frees, with the channels "samples" and "error";
+ * *left_out samples were not finite. The random numbers are the sampling's seed's. */
+static inline zt_image *render_sampled(int64_t *left_out, const zt_scene *scene, int width,
+                                       int height, zt_sampling sampling, int threads) {
     zt_arena arena = {0};
     zt_meshes *meshes;
     zt_pool *pool;
@@ -25,6 +26,8 @@ static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *sc
     assert_int_equal(zt_pool_open(&pool, threads), ZT_OK);
     assert_int_equal(zt_render_work_push(&work, &arena, threads), ZT_OK);
     assert_int_equal(zt_image_create(&image, width, height), ZT_OK);
+    assert_int_equal(zt_image_add_channel(image, "samples"), ZT_OK);
+    assert_int_equal(zt_image_add_channel(image, "error"), ZT_OK);
     zt_exposure exposure = zt_exposure_of(scene);
     zt_lens *lens;
     assert_int_equal(zt_tracer_prepare(&ready, &exposure, precision,
@@ -32,8 +35,13 @@ static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *sc
                      ZT_OK);
     assert_int_equal(zt_lens_prepare(&lens, &exposure, width, height, &arena), ZT_OK);
     zt_render_count count;
-    zt_render_job job = {
-        .scene = &ready, .lens = lens, .sampling = {.min = samples, .max = samples}};
+    zt_render_job job = {.scene = &ready,
+                         .lens = lens,
+                         .sampling = sampling,
+                         .place_key = sampling.seed,
+                         .frame_key = sampling.seed};
+    assert_int_equal(zt_warp_prepare(&job.warp, &sampling, &arena), ZT_OK);
+    assert_int_equal(zt_thin_prepare(&job.thin, &exposure, width, height, &arena), ZT_OK);
     assert_int_equal(zt_render(image, &count, &job, work, pool), ZT_OK);
     *left_out = count.left_out;
     zt_render_work_close(work);
@@ -41,6 +49,13 @@ static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *sc
     zt_meshes_close(&meshes);
     zt_arena_free(&arena);
     return image;
+}
+
+/* So many samples in each pixel. */
+static inline zt_image *render_leaving_out(int64_t *left_out, const zt_scene *scene, int width,
+                                           int height, int samples, int threads) {
+    zt_sampling even = {.min = samples, .max = samples};
+    return render_sampled(left_out, scene, width, height, even, threads);
 }
 
 static inline zt_image *render(const zt_scene *scene, int width, int height, int samples,
