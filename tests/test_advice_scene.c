@@ -93,6 +93,29 @@ static void lamps_inside(void **state) {
                 INSIDE("lamp", "sphere 1 from frame 10 to frame 14"));
 }
 
+/* A lamp with a size is shut in where all of it is inside; a ball that fills what it is in, or
+ * sticks out of it, is not; and on a surface it has distances enough. */
+static void lamps_with_sizes(void **state) {
+    (void)state;
+    static const char *const ball = "sphere: { center: [0, 0, 0], radius: 1 }";
+    assert_lamp("position: [0, 0, 0], radius: 0.9", ball,
+                INSIDE("lamp", "sphere 1 at frame 0"));
+    assert_lamp("position: [0, 0, 0], radius: 1", ball, "");
+    assert_lamp("position: [0, 0.5, 0], radius: 0.6", ball, "");
+    assert_lamp("position: [0, 1, 0], radius: 0.1", ball, "");
+    assert_lamp("position: [0, 1, 0], radius: 1e-9", ball, ON("lamp", "sphere 1 at frame 0"));
+    static const char *const lights[] = {
+        "disk_light: { name: lamp, radius: 0.8, position: [0, 0, 0] }",
+        "rectangle_light: { name: lamp, width: 0.8, height: 0.1, position: [0, 0, 0] }",
+        "disk_light: { name: lamp, radius: 2, position: [0, 0, 0] }",
+        "rectangle_light: { name: lamp, width: 2.5, height: 0.1, position: [0, 0, 0] }"};
+    for (int i = 0; i < 4; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "lights: [ %s ]\nobjects: [ %s ]\n", lights[i], ball);
+        assert_advice(text, i < 2 ? INSIDE("lamp", "sphere 1 at frame 0") : "");
+    }
+}
+
 /* A room: what the camera is in as well is no place where light is shut in. */
 static void lamps_in_rooms(void **state) {
     (void)state;
@@ -256,10 +279,11 @@ static void bounded(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps_inside),      cmocka_unit_test(lamps_in_rooms),
-        cmocka_unit_test(lamps_on_surfaces), cmocka_unit_test(lamps_far_away),
-        cmocka_unit_test(transforms),        cmocka_unit_test(tori_and_tubes),
-        cmocka_unit_test(camera_inside),     cmocka_unit_test(bounded),
+        cmocka_unit_test(lamps_inside),   cmocka_unit_test(lamps_with_sizes),
+        cmocka_unit_test(lamps_in_rooms), cmocka_unit_test(lamps_on_surfaces),
+        cmocka_unit_test(lamps_far_away), cmocka_unit_test(transforms),
+        cmocka_unit_test(tori_and_tubes), cmocka_unit_test(camera_inside),
+        cmocka_unit_test(bounded),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -1,5 +1,5 @@
-/* Advice on lamps: on surfaces, where light has no distance to fall off over, and inside of
- * what lets none of it out. */
+/* Advice on lamps: points on surfaces, where light has no distance to fall off over; and lamps
+ * inside of what lets none of it out. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,10 +23,13 @@ static void met(finding *f, int32_t object, double time_s) {
     if (f->object == object) zt_advice_met(&f->span, time_s);
 }
 
-/* A camera that is inside as well may be meant to be: a room. */
+/* Of a lamp with a size all must be inside, but for its skin, which nothing hides
+ * (tracer/lamps.h). A camera that is inside as well may be meant to be: a room. */
 static bool shuts_in(const zt_advice_moment *moment, const zt_light *light,
                      const zt_object *object, xform world) {
     if (!light->shadows || !zt_advice_within(moment, object, &world)) return false;
+    double reach = zt_light_reach(light) * (1 + 0x1p-10);
+    if (reach > 0 && zt_advice_touches(moment, object, &world, reach)) return false;
     vec3 eye = vec3_sub(moment->scene->camera.position, light->position);
     world.shift = vec3_sub(world.shift, eye);
     return !zt_advice_within(moment, object, &world);
@@ -37,11 +40,12 @@ static void look(void *user, const zt_advice_moment *moment) {
     const zt_scene *scene = moment->scene;
     for (int32_t l = 0; l < scene->light_count; l++) {
         const zt_light *light = &scene->lights[l];
-        if (light->kind != ZT_LIGHT_POINT) continue;
+        if (light->kind == ZT_LIGHT_AMBIENT) continue;
+        bool is_point = zt_light_reach(light) <= touching;
         zt_scene_worlds(moment->worlds, scene, light->position);
         for (int32_t i = 0; i < scene->object_count; i++) {
             const zt_object *object = &scene->objects[i];
-            if (zt_advice_touches(moment, object, &moment->worlds[i], touching))
+            if (is_point && zt_advice_touches(moment, object, &moment->worlds[i], touching))
                 met(&f->on[l], i, moment->time_s);
             else if (shuts_in(moment, light, object, moment->worlds[i]))
                 met(&f->inside[l], i, moment->time_s);
@@ -55,7 +59,8 @@ static void tell(const finding *found, const zt_animation *animation, const char
     for (int32_t l = 0; l < animation->rest.light_count && told < ZT_ADVICE_TOLD_MAX; l++) {
         if (isnan(found[l].span.first_s)) continue;
         zt_advice_words when = zt_advice_when(&animation->film, found[l].span);
-        zt_advice_name lamp = zt_advice_name_of(animation, ZT_OWNER_POINT, l);
+        zt_owner owner = (zt_owner)(ZT_OWNER_AMBIENT + animation->rest.lights[l].kind);
+        zt_advice_name lamp = zt_advice_name_of(animation, owner, l);
         zt_tell_at(listener, ZT_WARNING, lamp.place, "%s is %s %s %s: %s", lamp.text, where,
                    zt_advice_name_of_object(animation, found[l].object).text, when.text, what);
         told++;
