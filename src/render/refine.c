@@ -10,9 +10,9 @@
 
 #include "tracer/isa.h"
 
-/* Samples of a pixel at least, and so many that rays share a batch with few others; rays that a
- * thread takes at a time. */
-enum { PAIR = 2, TOGETHER = 16, TASK_RAYS = 8192 };
+/* Samples of a pixel at least, and where edges cannot be told; so many that rays share a batch
+ * with few others; rays that a thread takes at a time. */
+enum { PAIR = 2, BLIND = 4, TOGETHER = 16, TASK_RAYS = 8192 };
 
 /* What all slots of a round have in common. */
 typedef struct round_job {
@@ -268,7 +268,7 @@ static round_job plan_round(zt_frame *f, int32_t asked) {
                    .asked = asked,
                    .wanted = (float)(s->error * s->error),
                    .is_signed = zt_warp_is_signed(f->job->warp)};
-    int first = max_int(s->min, PAIR);
+    int first = max_int(s->min, s->edges && !f->at_edges ? BLIND : PAIR);
     j.more = min_int(j.asked ? j.asked : first, s->max - j.asked);
     j.group = ZT_BATCH / min_int(j.more, TOGETHER);
     j.task_slots = j.group * max_int(1, TASK_RAYS / (j.group * j.more));
