@@ -295,9 +295,9 @@ static void draw(chart *c) {
     zt_svg_begin(c->out, c->width, c->height);
     print_titles(c);
     legend(c, true);
-    print_floor(c);
     print_axis(c, 0);
     print_axis(c, 1);
+    print_floor(c);
     zt_svg_line(c->out, c->left, c->bottom, c->right, c->bottom, "axis");
     print_fit(c);
     for (int i = c->series_count - 1; i >= 0; i--) print_series(c, &c->series[i]);

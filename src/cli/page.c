@@ -44,8 +44,9 @@ static void print_head(const page *p) {
           "<link rel=\"icon\" href=\"data:,\">\n<title>",
           p->out);
     words(p, p->f->file);
-    fprintf(p->out, ": error against run time</title>\n<style>\n%s</style>\n</head>\n<body>\n",
-            page_style);
+    fprintf(p->out,
+            ": error against run time</title>\n<style>\n%s%s</style>\n</head>\n<body>\n",
+            page_style, page_style_of_figures);
     fputs("<header>\n<h1>Error against run time</h1>\n<p class=\"soft\">", p->out);
     words(p, p->f->file);
     fprintf(p->out, " · frame%s ", p->f->frame_count > 1 ? "s" : "");
@@ -308,7 +309,7 @@ static void print_costs(const page *p) {
     fputs("<th scope=\"col\">time<small>a frame</small></th>"
           "<th scope=\"col\">CPU<small>all threads</small></th>"
           "<th scope=\"col\">rays<small>millions</small></th>"
-          "<th scope=\"col\">rays<small>millions a second</small></th>"
+          "<th scope=\"col\">rays<small>millions / s</small></th>"
           "<th scope=\"col\">memory<small>at its peak</small></th></tr></thead>\n<tbody>\n",
           p->out);
     for (int i = 0; i < p->ladder->rung_count; i++) print_cost(p, i);

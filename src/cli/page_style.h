@@ -1,4 +1,5 @@
-/* How the page of a report looks, and what moves on it. */
+/* How the page of a report looks, and what moves on it. In parts, since a text of C has 4,095
+ * letters at most. */
 #ifndef ZT_CLI_PAGE_STYLE_H
 #define ZT_CLI_PAGE_STYLE_H
 
@@ -29,15 +30,19 @@ static const char page_style[] =
     "table{border-collapse:collapse;width:100%;font-size:14px;"
     "font-variant-numeric:tabular-nums}\n"
     "caption{text-align:left;color:var(--soft);padding:10px 12px 4px}\n"
-    "th,td{padding:6px 10px;text-align:right;white-space:nowrap;"
+    "th,td{padding:6px 9px;text-align:right;white-space:nowrap;"
     "border-top:1px solid var(--line)}\n"
     "thead th{border-top:0;background:var(--tint);font-weight:600;vertical-align:bottom;"
     "line-height:1.3}\n"
     "thead th small{display:block;font-weight:400;color:var(--soft)}\n"
     "th:first-child,td.left,th.left{text-align:left}\n"
     "tbody th{font-weight:500}\n"
+    "tr>th:first-child{position:sticky;left:0;background:#fff}\n"
+    "thead tr>th:first-child{background:var(--tint)}\n"
     "tr.kind th,tr.kind td{border-top:2px solid #9aa4af}\n"
-    "tr.faint td,tr.faint th{color:var(--soft)}\n"
+    "tr.faint td,tr.faint th{color:var(--soft)}\n";
+
+static const char page_style_of_figures[] =
     ".chart{margin:0}\n"
     ".chart svg{display:block;width:100%;height:auto;max-width:1104px}\n"
     ".narrow{display:none}\n"
@@ -45,7 +50,8 @@ static const char page_style[] =
     ".pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(330px,100%),"
     "1fr));gap:26px 22px;margin:18px 0 0;padding:0}\n"
     ".pictures figure{margin:0}\n"
-    ".pictures img{display:block;width:100%;height:auto;image-rendering:pixelated;background:#000}\n"
+    ".pictures "
+    "img{display:block;width:100%;height:auto;image-rendering:pixelated;background:#000}\n"
     ".pictures img+img{margin-top:3px}\n"
     ".pictures b{font-weight:600;color:var(--ink)}\n"
     ".whole{position:relative;margin:14px 0 0;max-width:720px}\n"
@@ -56,7 +62,9 @@ static const char page_style[] =
     ".scale span{flex:0 1 220px;height:11px;border-radius:2px}\n"
     ".stage{display:none;margin:18px 0 0}\n"
     ".stage .pair{display:grid;grid-template-columns:1fr 1fr;gap:4px}\n"
-    ".stage img{display:block;width:100%;height:auto;image-rendering:pixelated;background:#000}\n"
+    ".stage "
+    "img{display:block;width:100%;height:auto;image-rendering:pixelated;background:#000}\n"
+    ".stage img[hidden]{display:none}\n"
     ".stage p{margin:8px 0 0}\n"
     ".choices{display:flex;flex-wrap:wrap;gap:6px;margin:0 0 10px}\n"
     ".choices button{font:inherit;font-size:14px;padding:4px 12px;border:1px solid "
@@ -66,7 +74,7 @@ static const char page_style[] =
     "button:focus-visible,a:focus-visible,.scroll:focus-visible{outline:2px solid "
     "var(--mark);outline-offset:2px}\n"
     ".live .stage{display:block}\n"
-    ".bar{display:flex;height:14px;min-width:130px;border-radius:3px;overflow:hidden;"
+    ".bar{display:flex;height:14px;min-width:110px;border-radius:3px;overflow:hidden;"
     "background:var(--tint)}\n"
     ".bar i{height:100%}\n"
     ".key i{display:inline-block;width:12px;height:12px;border-radius:3px;"
@@ -80,7 +88,7 @@ static const char page_style[] =
     "header{padding-top:28px}h1{font-size:27px}h2{margin-top:40px}"
     ".advice{padding:14px 16px}.advice .first{font-size:19px}"
     ".wide{display:none}.narrow{display:block}.stage .pair{grid-template-columns:1fr}"
-    "th,td{padding:6px 9px}.bar{min-width:130px}}\n"
+    "th,td{padding:6px 9px}.bar{min-width:90px}}\n"
     "@media print{.scroll{overflow:visible}.stage{display:none}}\n";
 
 /* Puts the pictures on one stage, where they replace each other in place: what differs moves.
