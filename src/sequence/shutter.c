@@ -43,7 +43,10 @@ typedef struct opening {
     bool steps[ZT_TIME_CELLS + 1]; /* of the way from each moment to the next one: it is one, */
     zt_gap gaps[ZT_TIME_CELLS + 1]; /* and what is off it */
     int32_t moment_count, moments_most;
-    double step_share;                    /* of the largest step, */
+    bool refused;      /* something asked for more moments than there may be; then */
+    double widest;     /* only intervals that are wider than this are halved, so that all of the
+                          opening has its share of what there may be; else 0 */
+    double step_share; /* of the largest step, */
     const zt_glance *step_from, *step_to; /* which is between these */
 } opening;
 
@@ -55,6 +58,11 @@ static double time_of(const zt_animation *animation, int64_t frame, double cell)
     return zt_rate_time(film->rate, frame) + share * film->rate.den / film->rate.num;
 }
 
+static zt_status look_again(zt_glance *look, opening *o, double cell) {
+    look->cell = cell;
+    return zt_glance_at(look, &o->chords, time_of(o->animation, o->frame, cell), o->listener);
+}
+
 static zt_status look_at(zt_glance **out, opening *o, double cell) {
     zt_glance *look = o->spare;
     if (look)
@@ -63,8 +71,7 @@ static zt_status look_at(zt_glance **out, opening *o, double cell) {
         look = zt_glance_push(&o->chords, o->arena);
     if (!look) return ZT_EMEMORY;
     *out = look;
-    look->cell = cell;
-    ZT_TRY(zt_glance_at(look, &o->chords, time_of(o->animation, o->frame, cell), o->listener));
+    ZT_TRY(look_again(look, o, cell));
     if (!o->moves)
         o->moves = zt_chords_gap(&o->chords, o->first, o->first, look, 0).share > STILL;
     return ZT_OK;
@@ -145,12 +152,16 @@ static zt_status advance(opening *o) {
         ZT_TRY(test_narrow(&step, &gap, o, a, b));
     else
         ZT_TRY(test(&split, &gap, o, a, b, TESTS));
-    if (split && o->moment_count + o->pending_count < o->moments_most) {
+    bool room = o->moment_count + o->pending_count < o->moments_most;
+    if (split && room && b->cell - a->cell > o->widest) {
+        double middle = a->cell + rint((b->cell - a->cell) / 2);
+        if (o->widest > 0 && split->cell != middle) ZT_TRY(look_again(split, o, middle));
         o->splits[gap.part]++;
         o->pending[o->pending_count++] = split;
         return ZT_OK;
     }
     if (split) give_back(o, split);
+    if (split && !room) o->refused = true;
     o->steps[o->moment_count - 1] = step;
     o->gaps[o->moment_count - 1] = gap;
     o->moments[o->moment_count++] = b;
@@ -213,14 +224,26 @@ static void thin_out(opening *o) {
     o->moment_count = kept + 1;
 }
 
+static zt_status bisect(opening *o) {
+    ZT_TRY(begin(o));
+    while (o->pending_count > 0) ZT_TRY(advance(o));
+    return ZT_OK;
+}
+
 static zt_status divide(opening *o) {
     double size = (double)zt_chords_glance_size(&o->chords);
     o->moments_most = ZT_TIME_CELLS + 1;
     if (MEMORY_MAX / size < o->moments_most) o->moments_most = (int32_t)(MEMORY_MAX / size);
     o->splits = ZT_PUSH(o->arena, int32_t, (size_t)o->chords.part_count);
     if (!o->splits) return ZT_EMEMORY;
-    ZT_TRY(begin(o));
-    while (o->pending_count > 0) ZT_TRY(advance(o));
+    ZT_TRY(bisect(o));
+    if (o->refused) {
+        while (o->moment_count > 1) give_back(o, o->moments[--o->moment_count]);
+        o->moment_count = 0;
+        o->step_share = 0;
+        o->widest = 2.0 * ZT_TIME_CELLS / o->moments_most;
+        ZT_TRY(bisect(o));
+    }
     thin_out(o);
     return ZT_OK;
 }
