@@ -14,13 +14,14 @@
 
 enum { FRAMES_MAX = 512 };
 
+static heard movie_heard; /* of the movie that was opened last */
+
 /* Opens a movie; fails with what was told where that is refused. */
 static inline zt_output *open_movie_by(const char *path, const zt_output_format *format,
                                        const zt_output_option *options) {
-    static heard h; /* closing tells, too */
     zt_output *output;
-    if (zt_output_open(&output, path, format, options, listener_of(&h)) != ZT_OK)
-        fail_msg("%s", h.text);
+    if (zt_output_open(&output, path, format, options, listener_of(&movie_heard)) != ZT_OK)
+        fail_msg("%s", movie_heard.text);
     return output;
 }
 
@@ -29,7 +30,8 @@ static inline zt_output *open_movie(const char *path, const zt_output_format *fo
 }
 
 static inline void close_movie(zt_output **output) {
-    assert_int_equal(zt_output_close(output), ZT_OK);
+    if (zt_output_close(output) != ZT_OK || movie_heard.error_count > 0)
+        fail_msg("%s", movie_heard.text);
     assert_null(*output);
 }
 

@@ -122,7 +122,8 @@ static bool near_rate(const check *c, AVRational found) {
     int ticks = e->choice->container->ticks_a_second;
     double tolerance =
         1e-3 + (ticks ? 2 * wanted / ((double)ticks * (double)e->frame_count) : 0);
-    return found.num > 0 && found.den > 0 && fabs(av_q2d(found) / wanted - 1) < tolerance;
+    if (found.num <= 0 || found.den <= 0) return !e->choice->container->has_boxes; /* unknown */
+    return fabs(av_q2d(found) / wanted - 1) < tolerance;
 }
 
 /* A tag that says nothing is no mistake: some kinds of file cannot hold it. */

@@ -1,5 +1,5 @@
 /* R'G'B' of 8 or 16 bits is developed (image/develop.h). Formats of R'G'B' get it as it is,
- * formats of Y'CbCr by libswscale. */
+ * formats of Y'CbCr by libswscale, or with more than 8 bits by video_ycbcr. */
 #include "encode/video_pixels.h"
 
 #include <math.h>
@@ -12,6 +12,7 @@
 #include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
 
+#include "encode/video_ycbcr.h"
 #include "image/develop.h"
 
 struct zt_video_pixels {
@@ -19,7 +20,8 @@ struct zt_video_pixels {
     enum AVPixelFormat pixels;
     bool is_rgb, is_deep, has_alpha;
     AVFrame *rgb;                 /* an image developed: RGB24, RGBA, RGB48 or RGBA64 */
-    struct SwsContext *converter; /* from there; NULL where frames are R'G'B' themselves */
+    struct SwsContext *converter; /* from there to Y'CbCr of 8 bits; else NULL */
+    float *chroma;                /* for Y'CbCr of more */
     zt_image row;                 /* one, without the alpha in its colours */
     uint16_t *line;               /* of one component */
     zt_view view;
@@ -88,8 +90,9 @@ static zt_status open_all(zt_video_pixels *p, const zt_output_format *format,
     p->row = (zt_image){.width = format->width, .height = 1};
     p->row.pixels = malloc(4 * width * sizeof *p->row.pixels);
     p->line = malloc(4 * width * sizeof *p->line);
-    if (!p->row.pixels || !p->line) return ZT_EMEMORY;
-    return p->is_rgb ? ZT_OK : make_converter(p, ear);
+    p->chroma = malloc(2 * (width + 2) * sizeof *p->chroma);
+    if (!p->row.pixels || !p->line || !p->chroma) return ZT_EMEMORY;
+    return p->is_rgb || p->is_deep ? ZT_OK : make_converter(p, ear);
 }
 
 zt_status zt_video_pixels_open(zt_video_pixels **out, const zt_output_format *format,
@@ -118,6 +121,7 @@ void zt_video_pixels_close(zt_video_pixels **converter) {
     av_frame_free(&p->rgb);
     free(p->row.pixels);
     free(p->line);
+    free(p->chroma);
     free(p);
     *converter = NULL;
 }
@@ -206,8 +210,10 @@ zt_status zt_video_pixels_convert(AVFrame **frame, zt_video_pixels *p, const zt_
         int error = sws_scale(p->converter, rgb, p->rgb->linesize, 0, image->height,
                               (*frame)->data, (*frame)->linesize);
         if (error < 0) status = zt_libav_refuse(ear, error);
-    } else if (status == ZT_OK) {
+    } else if (status == ZT_OK && p->is_rgb) {
         lay_out(p, *frame);
+    } else if (status == ZT_OK) {
+        zt_video_ycbcr(*frame, p->rgb, p->chroma);
     }
     if (status == ZT_OK)
         tag_frame(p, *frame);
