@@ -18,14 +18,31 @@ static int count_even(const zt_ladder *ladder) {
     return count;
 }
 
+enum { FITTED_MAX = 64 };
+
+/* Where the error bends, of counts that are powers of two: those between are spread less well,
+ * and each of them would be a bend. */
+static int find_knee(const zt_findings *f) {
+    double time[FITTED_MAX], error[FITTED_MAX];
+    int rungs[FITTED_MAX], count = 0;
+    for (int i = f->first_fitted; i < f->first_fitted + f->fitted_count; i++) {
+        const zt_rung *rung = &f->ladder->rungs[i];
+        if ((rung->sampling.max & (rung->sampling.max - 1)) != 0) continue;
+        time[count] = rung->frame_s;
+        error[count] = rung->error.rmse;
+        rungs[count++] = i;
+    }
+    int knee = zt_ladder_knee(time, error, count);
+    return knee < 0 ? -1 : rungs[knee];
+}
+
 /* A single sample is in the middle of its pixel and no random one; and what is near the
  * reference's own error is not known well enough. */
 static void fit(zt_findings *f) {
-    enum { MOST = 64 };
-    double time[MOST], samples[MOST], error[MOST];
+    double time[FITTED_MAX], samples[FITTED_MAX], error[FITTED_MAX];
     const zt_rung *rungs = f->ladder->rungs;
     f->first_fitted = f->even_count > 1 ? 1 : 0;
-    for (int i = f->first_fitted; i < f->even_count && f->fitted_count < MOST; i++) {
+    for (int i = f->first_fitted; i < f->even_count && f->fitted_count < FITTED_MAX; i++) {
         if (!zt_ladder_knows(f->ladder, &rungs[i]) || !(rungs[i].error.rmse > 0)) break;
         time[f->fitted_count] = rungs[i].frame_s;
         samples[f->fitted_count] = rungs[i].sampling.max;
@@ -33,8 +50,7 @@ static void fit(zt_findings *f) {
     }
     f->slope_time = zt_ladder_slope(time, error, f->fitted_count);
     f->slope_samples = zt_ladder_slope(samples, error, f->fitted_count);
-    int knee = zt_ladder_knee(time, error, f->fitted_count);
-    f->knee = knee < 0 ? -1 : f->first_fitted + knee;
+    f->knee = find_knee(f);
 }
 
 zt_findings zt_findings_of(const zt_ladder *ladder, const zt_animation *animation) {
