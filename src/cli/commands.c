@@ -36,7 +36,7 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                           NULL, ANYWHERE},
     [ZT_COMMAND_EXPLAIN] = {"explain", "FILE [NAME@TIME]", 1, 1,
                             "Tells what a property does at a frame, and why: "
-                            "ball.center@37; or the frames' precision",
+                            "ball.center@37; or what is chosen for frames",
                             NULL, NULL, ANYWHERE | BIT(FRAMES)},
     [ZT_COMMAND_CURVES] = {"curves", "FILE [NAME...]", 1, INT_MAX,
                            "Plots properties over time, or all that move: ball.center",
