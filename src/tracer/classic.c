@@ -297,12 +297,13 @@ static void deliver_paths(zt_radiance *restrict light, work *restrict w) {
         int32_t source = w->from.source[k], inside = source >= 0 ? source & 1 : 0;
         uint32_t what = (uint32_t)(16 * p->primitive[k] + 2 * p->face[k] + inside) << 1 |
                         (uint32_t)p->cell[k];
-        path[k] = zt_sample_mix(what + 1) ^ path[k];
+        uint32_t whole = zt_sample_mix(what + 1) ^ path[k];
+        path[k] = zt_sample_mix(light->path[p->moved ? p->pixel[k] : k] + whole);
     }
-    for (int k = 0; k < p->count; k++) {
-        uint32_t *whole = &light->path[p->pixel[k]];
-        *whole = zt_sample_mix(*whole + path[k]);
-    }
+    if (p->moved)
+        for (int k = 0; k < p->count; k++) light->path[p->pixel[k]] = path[k];
+    else
+        memcpy(light->path, path, sizeof light->path);
 }
 
 static void deliver(zt_radiance *restrict light, const work *restrict w) {

@@ -11,6 +11,8 @@
  *     ambient * color
  *   + for each point light, each channel cut to 0..1:
  *         power / d^2 * |v . n| * color, none where the light is behind the surface or hidden
+ *   + of each lamp with a size the same for one place on it (tracer/lamps.h), each channel cut
+ *     likewise: their mean over many rays is what the lamp gives
  *   + reflectivity * what is seen along the mirrored ray, to the scene's depth
  * Nothing hit is black. The normal n faces the side that the ray came from. */
 extern const zt_kernel ZT_KERNEL_NAME(zt_kernel);
