@@ -6,7 +6,7 @@
 
 /* By how much more or less a frame may take than the one before for what was found out
  * meanwhile: a step in noise of half of this is not seen. */
-#define STEP 1.05
+#define STEP 1.08
 
 /* What counts of the frames before when the next one is done, and how many frames as meant
  * those are worth that the pilot saw. */

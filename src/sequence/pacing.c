@@ -102,12 +102,14 @@ static void say_allotted(const zt_plan *p, zt_listener listener) {
         zt_tell(listener, ZT_NOTE, "errors from %g to %g are allotted, for about %s", low_error,
                 high_error, time.text);
     else if (adaptive)
-        zt_tell(listener, ZT_NOTE, "an error of %g is allotted, for about %s", low_error, time.text);
+        zt_tell(listener, ZT_NOTE, "an error of %g is allotted, for about %s", low_error,
+                time.text);
     else if (low < high)
         zt_tell(listener, ZT_NOTE, "%d to %d samples a pixel are allotted, for about %s", low,
                 high, time.text);
     else
-        zt_tell(listener, ZT_NOTE, "%d samples a pixel are allotted, for about %s", low, time.text);
+        zt_tell(listener, ZT_NOTE, "%d samples a pixel are allotted, for about %s", low,
+                time.text);
 }
 
 /* What cannot be met, or need not be. */

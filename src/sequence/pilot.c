@@ -19,6 +19,8 @@ typedef struct pilot {
     zt_renderer *renderer;
     zt_watcher watcher;     /* stops, and says nothing */
     zt_image *images[2];    /* of the renderer's size */
+    zt_image *small, *tiny; /* of fewer pixels, and of fewer still */
+    double many;            /* times more pixels than the small one the others have */
     double left_s;          /* that it may still take */
     double fixed_s, unit_s; /* of a frame: before its first sample, and for each, a pixel */
 } pilot;
@@ -32,10 +34,14 @@ static zt_status take(taken *t, pilot *p, int64_t frame, zt_image *image,
                       zt_sampling sampling) {
     zt_renderer *r = p->renderer;
     zt_sampling own = r->sampling;
+    zt_output_format format = r->format;
     double begun_s = zt_clock_s();
     r->sampling = sampling;
+    r->format.width = image->width;
+    r->format.height = image->height;
     zt_status status = zt_renderer_take(r, frame, image, &p->watcher);
     r->sampling = own;
+    r->format = format;
     double all_s = zt_clock_s() - begun_s;
     p->left_s -= all_s;
     *t = (taken){all_s - r->cost.render_s, r->cost.render_s};
@@ -45,25 +51,15 @@ static zt_status take(taken *t, pilot *p, int64_t frame, zt_image *image,
 /* A first impression, from a picture of fewer pixels: twice, as the first time some things are
  * made that last for the run. */
 static zt_status look(pilot *p, int64_t frame) {
-    zt_renderer *r = p->renderer;
-    zt_output_format own = r->format;
-    zt_sampling sampling = r->sampling;
-    zt_image *image;
+    zt_sampling sampling = p->plan->sampling;
     taken t = {0};
-    r->format.width = (own.width + SMALLER - 1) / SMALLER;
-    r->format.height = (own.height + SMALLER - 1) / SMALLER;
     sampling.min = sampling.max = 2;
     sampling.error = 0;
     sampling.edges = false;
-    zt_status status = zt_image_create(&image, r->format.width, r->format.height);
-    for (int i = 0; i < 2 && status == ZT_OK; i++) status = take(&t, p, frame, image, sampling);
-    double pixels = (double)own.width * own.height;
+    for (int i = 0; i < 2; i++) ZT_TRY(take(&t, p, frame, p->small, sampling));
     p->fixed_s = t.fixed_s;
-    p->unit_s =
-        fmax(t.render_s / 2, 1e-9) * pixels / ((double)r->format.width * r->format.height);
-    r->format = own;
-    zt_image_free(&image);
-    return status;
+    p->unit_s = fmax(t.render_s / 2, 1e-9) * p->many;
+    return ZT_OK;
 }
 
 /* Frame number `index` of `count` that are spread evenly over the film. */
@@ -92,17 +88,16 @@ static double error_of(const zt_image *a, const zt_image *b) {
     return sqrt(sum / (2 * 3 * (double)count));
 }
 
-/* Renders a frame twice; `*unit_s` is what each sample took. */
+/* Renders a frame twice; `*t` is what it takes. */
 static zt_status measure(double *error, taken *t, pilot *p, int64_t frame, int samples) {
     taken each;
-    *t = (taken){0};
     for (uint32_t i = 0; i < 2; i++) {
         zt_sampling sampling = p->plan->sampling;
         sampling.min = sampling.max = samples;
         sampling.seed += i * 0x9e3779b9u;
         ZT_TRY(take(&each, p, frame, p->images[i], sampling));
-        t->fixed_s += each.fixed_s / 2;
-        t->render_s += each.render_s / 2;
+        if (i > 0 && each.render_s > t->render_s) continue; /* something else took its time */
+        *t = each;
     }
     *error = error_of(p->images[0], p->images[1]);
     return ZT_OK;
@@ -173,65 +168,147 @@ static zt_status pilot_even(pilot *p) {
 }
 
 /* ---- samples by an error --------------------------------------------------------------------
+ *
+ * How much more time smaller errors take does not follow from larger ones: ever more pixels
+ * join in. So it is small pictures that go all the way down to the error that there is time
+ * for.
  */
 
-static zt_status measure_adaptive(taken *t, pilot *p, int64_t frame, double error) {
+static zt_status measure_adaptive(taken *t, pilot *p, int64_t frame, zt_image *image,
+                                  double error) {
     zt_sampling sampling = p->plan->sampling;
     sampling.error = error;
     sampling.max = ZT_PLAN_SAMPLES_MAX;
-    return take(t, p, frame, p->images[0], sampling);
+    return take(t, p, frame, image, sampling);
 }
 
-/* Ever smaller errors on one frame, while there is time: which one it came to, and by which
- * power of the error time grows beyond what the least samples take. */
-static zt_status descend(pilot *p, double *error, int64_t frame) {
-    const double none = 1e-5; /* where nothing asks for more samples, at last */
-    taken least, t;
-    double share_s = p->left_s / 2, last_error = 1, last_more_s = 0;
-    ZT_TRY(measure_adaptive(&least, p, frame, 1));
-    p->plan->power = USUAL_POWER;
-    *error = 0.05;
-    for (;;) {
-        ZT_TRY(measure_adaptive(&t, p, frame, *error));
-        double more_s = fmax(t.render_s - least.render_s, 0);
-        bool clear = last_more_s > 0.1 * least.render_s && more_s > last_more_s;
-        if (clear)
-            p->plan->power =
-                fmin(fmax(log(more_s / last_more_s) / log(last_error / *error), 1), 2.2);
-        bool little = more_s < 0.2 * least.render_s;
-        if (*error < none && little) p->plan->enough = pow(*error, -p->plan->power);
-        double step = little ? 4 : 2;
-        double next_s = t.fixed_s + least.render_s + more_s * step * step;
-        if (*error < none || p->left_s - next_s < share_s) return ZT_OK;
-        last_more_s = more_s;
-        last_error = *error;
-        *error /= step;
-    }
-}
+enum { STEPS_MAX = 40 };
 
-static zt_status pilot_adaptive(pilot *p) {
-    zt_plan *plan = p->plan;
-    double error;
-    int64_t middle = spread_frame(plan, 0, 1);
-    ZT_TRY(descend(p, &error, middle));
-    double before_s = p->left_s;
-    int count = 1;
-    for (int i = 0; i < count; i++) {
-        taken least, t;
-        int64_t frame = spread_frame(plan, i, count);
-        ZT_TRY(measure_adaptive(&least, p, frame, 1));
-        ZT_TRY(measure_adaptive(&t, p, frame, error));
-        double more_s = fmax(t.render_s - least.render_s, 1e-3 * least.render_s);
-        plan->costs[i] = (zt_cost){frame, least.fixed_s + least.render_s,
-                                   more_s * pow(error, plan->power), 1};
-        plan->cost_count = i + 1;
-        if (i > 0 || count > 1) continue;
-        /* How many of these there is time for: these are then looked at. */
-        double each_s = before_s - p->left_s;
-        count = (int)fmin(fmax(p->left_s / each_s, 1), most_frames(plan));
-        if (count > 1) i = -1;
+/* Ever smaller errors of one frame. Of a small picture: what the least samples take, and what
+ * each error takes beyond that. Of the whole one: what the least samples take, and how many
+ * times more it takes beyond that: where it is edges that ask for samples, there are not as
+ * many times more as there are pixels. */
+typedef struct descent {
+    double error[STEPS_MAX], more_s[STEPS_MAX], least_s;
+    int count;
+    double tiny_least_s; /* of an even smaller picture, which shows how many times more it is */
+    double whole_least_s, times;
+} descent;
+
+static zt_status measure_small(double *least_s, pilot *p, int64_t frame, zt_image *image) {
+    taken t;
+    *least_s = INFINITY;
+    for (int i = 0; i < 2; i++) {
+        ZT_TRY(measure_adaptive(&t, p, frame, image, 1));
+        *least_s = fmin(*least_s, t.render_s);
     }
     return ZT_OK;
+}
+
+static zt_status measure_least(descent *d, pilot *p, int64_t frame) {
+    taken t;
+    ZT_TRY(measure_small(&d->tiny_least_s, p, frame, p->tiny));
+    ZT_TRY(measure_small(&d->least_s, p, frame, p->small));
+    d->whole_least_s = p->many * d->least_s;
+    d->times = p->many;
+    if (p->left_s < 1.5 * (p->fixed_s + d->whole_least_s)) return ZT_OK;
+    ZT_TRY(measure_adaptive(&t, p, frame, p->images[0], 1));
+    d->whole_least_s = t.render_s;
+    d->times = fmin(fmax(t.render_s / d->least_s, SMALLER), p->many);
+    return ZT_OK;
+}
+
+/* As much more as the small picture took than the tiny one, the whole takes again, and again.
+ */
+static zt_status see_times(descent *d, pilot *p, int64_t frame) {
+    taken t;
+    double more_s = d->more_s[d->count - 1];
+    ZT_TRY(measure_adaptive(&t, p, frame, p->tiny, d->error[d->count - 1]));
+    double tiny_more_s = t.render_s - d->tiny_least_s;
+    if (tiny_more_s < 0.5 * d->tiny_least_s) return ZT_OK;
+    double rise = fmin(fmax(more_s / tiny_more_s, 2), 4);
+    d->times = fmin(rise * SMALLER, p->many);
+    return ZT_OK;
+}
+
+/* Goes down to the error that fills the time of a frame, or while there is time. */
+static zt_status descend(descent *d, pilot *p, int64_t frame, double frame_s) {
+    const double none = 1e-5; /* where nothing asks for more samples, at last */
+    double error = 0.05, keep_s;
+    taken t;
+    ZT_TRY(measure_least(d, p, frame));
+    for (keep_s = p->left_s / 4;;) {
+        ZT_TRY(measure_adaptive(&t, p, frame, p->small, error));
+        double more_s = fmax(t.render_s - d->least_s, 1e-3 * d->least_s);
+        d->error[d->count] = error;
+        d->more_s[d->count++] = more_s;
+        ZT_TRY(see_times(d, p, frame));
+        bool little = more_s < 0.2 * d->least_s;
+        bool full = t.fixed_s + d->whole_least_s + d->times * more_s > frame_s;
+        double next_s = 2 * t.fixed_s + d->least_s + 5 * more_s;
+        if (full || d->count == STEPS_MAX || p->left_s - next_s < keep_s) return ZT_OK;
+        if (error < none && little) p->plan->enough = 1 / error;
+        if (error < none) return ZT_OK;
+        error /= little ? 4 : 2;
+    }
+}
+
+/* By which power of the error time grows at the last one. */
+static double power_of(const descent *d) {
+    int last = d->count - 1;
+    if (last == 0 || d->more_s[last - 1] < 0.1 * d->least_s) return USUAL_POWER;
+    double rise = log(d->more_s[last] / d->more_s[last - 1]);
+    return fmin(fmax(rise / log(d->error[last - 1] / d->error[last]), 1), 4);
+}
+
+/* Looks at the whole picture with the smallest error that there is time for. */
+static zt_status compare(descent *d, pilot *p, int64_t frame) {
+    taken t;
+    int i = d->count - 1;
+    while (i >= 0 && p->fixed_s + d->whole_least_s + d->times * d->more_s[i] > p->left_s / 2)
+        i--;
+    if (i < 0 || d->times * d->more_s[i] < 0.3 * d->whole_least_s) return ZT_OK;
+    ZT_TRY(measure_adaptive(&t, p, frame, p->images[0], d->error[i]));
+    d->times = fmin(fmax((t.render_s - d->whole_least_s) / d->more_s[i], 1), p->many);
+    return ZT_OK;
+}
+
+static zt_status pilot_adaptive(pilot *p, double frame_s) {
+    zt_plan *plan = p->plan;
+    descent d = {.count = 0};
+    taken t, least;
+    int64_t middle = spread_frame(plan, 0, 1);
+    ZT_TRY(descend(&d, p, middle, frame_s));
+    ZT_TRY(compare(&d, p, middle));
+    plan->power = power_of(&d);
+    if (plan->enough > 0) plan->enough = pow(plan->enough, plan->power);
+    double error = d.error[d.count - 1], scale = pow(error, plan->power);
+    plan->cost_count = 1;
+    plan->costs[0] = (zt_cost){middle, p->fixed_s + d.whole_least_s,
+                               d.times * d.more_s[d.count - 1] * scale, 1};
+    double each_s = 2 * p->fixed_s + 2 * d.least_s + d.more_s[d.count - 1];
+    int count = (int)fmin(p->left_s / each_s, most_frames(plan));
+    for (int i = 0; i < count && count > 1; i++) {
+        int64_t frame = spread_frame(plan, i, count);
+        ZT_TRY(measure_adaptive(&least, p, frame, p->small, 1));
+        ZT_TRY(measure_adaptive(&t, p, frame, p->small, error));
+        double more_s = fmax(t.render_s - least.render_s, 1e-3 * least.render_s);
+        plan->costs[i] =
+            (zt_cost){frame, t.fixed_s + least.render_s * d.whole_least_s / d.least_s,
+                      d.times * more_s * scale, 1};
+        plan->cost_count = count;
+    }
+    return ZT_OK;
+}
+
+static zt_status make_images(pilot *p, const zt_output_format *format) {
+    int width = (format->width + SMALLER - 1) / SMALLER,
+        height = (format->height + SMALLER - 1) / SMALLER;
+    p->many = (double)format->width * format->height / ((double)width * height);
+    ZT_TRY(zt_image_create(&p->small, width, height));
+    ZT_TRY(zt_image_create(&p->tiny, (width + 1) / 2, (height + 1) / 2));
+    ZT_TRY(zt_image_create(&p->images[0], format->width, format->height));
+    return zt_image_create(&p->images[1], format->width, format->height);
 }
 
 zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher) {
@@ -240,12 +317,13 @@ zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher)
         plan->budget.film_s > 0 ? plan->budget.film_s : plan->budget.frame_s * frame_count;
     pilot p = {.plan = plan, .renderer = r, .left_s = PILOT_SHARE * all_s};
     if (watcher) p.watcher = (zt_watcher){NULL, watcher->stopped, watcher->user};
-    zt_status status = ZT_OK;
-    for (int i = 0; i < 2 && status == ZT_OK; i++)
-        status = zt_image_create(&p.images[i], r->format.width, r->format.height);
+    zt_status status = make_images(&p, &r->format);
     if (status == ZT_OK) status = look(&p, spread_frame(plan, 0, 1));
     bool adaptive = plan->sampling.min != plan->sampling.max;
-    if (status == ZT_OK) status = adaptive ? pilot_adaptive(&p) : pilot_even(&p);
+    if (status == ZT_OK)
+        status = adaptive ? pilot_adaptive(&p, all_s / frame_count) : pilot_even(&p);
+    zt_image_free(&p.small);
+    zt_image_free(&p.tiny);
     zt_image_free(&p.images[0]);
     zt_image_free(&p.images[1]);
     return status;
