@@ -6,13 +6,17 @@
 
 #define BIT(option) (1U << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
+#define MOVIE                                                                                  \
+    (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
+     BIT(ENCODER_OPTION) | BIT(COMMENT) | BIT(AUDIO))
 #define ONE_FRAME                                                                              \
-    (ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION) |       \
-     BIT(PRESET))
-#define FINISHED (ONE_FRAME | BIT(TIME) | BIT(TIME_PER_FRAME) | BIT(MANIFEST))
+    (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION))
+#define FINISHED                                                                               \
+    (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
+     BIT(MANIFEST))
 
 static const char images[] =
-    "  film.mp4         a movie, H.264\n"
+    "  film.mp4         a movie, H.264; also .mov .mkv, .webm (VP9), .gif, .apng\n"
     "  frames.####.png  numbered images; also frames.%04d.png; also .exr .tif .jpg\n"
     "  image.png        one image\n"
     "  film.hash        a line with a checksum for each frame\n";
@@ -57,7 +61,14 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
     [ZT_OPTION_FRAME] = {"frame", 0, "10,40",
                          "the frames to measure; the middle one by default"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
-    [ZT_OPTION_SAMPLES] = {"samples", 0, "N", "samples a pixel, instead of the description's"},
+    [ZT_OPTION_SAMPLES] = {"samples", 0, "N",
+                           "samples a pixel, instead of the description's; 4-64 with --error"},
+    [ZT_OPTION_ERROR] = {"error", 0, "0.002",
+                         "a pixel that is better takes no more samples; linear light"},
+    [ZT_OPTION_QUALITY] = {"quality", 0, "edges",
+                           "or even: one sample a pixel, and more at edges alone"},
+    [ZT_OPTION_FILTER] = {"filter", 0, "gaussian",
+                          "or box, tent, mitchell, blackman-harris, of samples"},
     [ZT_OPTION_FILTERS] = {"filters", 0, NULL, "measure each filter, not the film's own alone"},
     [ZT_OPTION_TIME] = {"time", 0, "20min",
                         "choose samples so that all frames take about as long: ms s min h"},
@@ -73,8 +84,23 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                            "instead of one a core; the images stay the same"},
     [ZT_OPTION_PRECISION] = {"precision", 0, "double",
                              "or single, of all rays, instead of what each frame asks for"},
+    [ZT_OPTION_CODEC] = {"codec", 0, "h265",
+                         "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1", true},
+    [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale",
+                       true},
+    [ZT_OPTION_BITRATE] = {"bitrate", 0, "8M", "bits a second of a movie, instead of --crf",
+                           true},
     [ZT_OPTION_PRESET] = {"preset", 0, "medium",
-                          "of the movie's encoder, ultrafast .. veryfast .. placebo"},
+                          "how long a movie's encoder takes, by its own names or numbers",
+                          true},
+    [ZT_OPTION_PIXEL_FORMAT] =
+        {"pixel-format", 0, "yuv420p10",
+         "of a movie, by FFmpeg's names; with an a, such as yuva444p10, it has alpha", true},
+    [ZT_OPTION_ENCODER_OPTION] = {"encoder-option", 0, "K=V",
+                                  "for the movie's encoder itself; any number of times", true},
+    [ZT_OPTION_COMMENT] = {"comment", 0, "TEXT", "in the movie's metadata", true},
+    [ZT_OPTION_AUDIO] = {"audio", 0, "track.wav", "the movie's sound, instead of the film's",
+                         true},
     [ZT_OPTION_SET] = {"set", 0, "NAME=40",
                        "in place of what FILE says: lamp.intensity=40; any number of times"},
     [ZT_OPTION_QUIET] = {"quiet", 'q', NULL, "print nothing but errors"},

@@ -36,6 +36,9 @@ typedef enum zt_option {
     ZT_OPTION_FRAME,
     ZT_OPTION_SIZE,
     ZT_OPTION_SAMPLES,
+    ZT_OPTION_ERROR,
+    ZT_OPTION_QUALITY,
+    ZT_OPTION_FILTER,
     ZT_OPTION_FILTERS,
     ZT_OPTION_TIME,
     ZT_OPTION_TIME_PER_FRAME,
@@ -44,7 +47,14 @@ typedef enum zt_option {
     ZT_OPTION_SAMPLE,
     ZT_OPTION_THREADS,
     ZT_OPTION_PRECISION,
+    ZT_OPTION_CODEC,
+    ZT_OPTION_CRF,
+    ZT_OPTION_BITRATE,
     ZT_OPTION_PRESET,
+    ZT_OPTION_PIXEL_FORMAT,
+    ZT_OPTION_ENCODER_OPTION,
+    ZT_OPTION_COMMENT,
+    ZT_OPTION_AUDIO,
     ZT_OPTION_SET,
     ZT_OPTION_QUIET,
     ZT_OPTION_HELP,
@@ -57,6 +67,7 @@ typedef struct zt_option_row {
     char letter;         /* '\0': none */
     const char *example; /* of its value; NULL: takes none */
     const char *help;
+    bool is_of_output; /* passed on to it, by the same name */
 } zt_option_row;
 
 extern const zt_option_row zt_options_known[ZT_OPTION_COUNT];

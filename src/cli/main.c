@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -116,6 +117,23 @@ static zt_status write_manifest(const zt_renderer *renderer, const char *descrip
     return status;
 }
 
+/* Opens the output, which is told the film's title. */
+static zt_status open_output(zt_output **output, const char *target,
+                             const zt_output_format *format, const zt_options *options,
+                             zt_report *report) {
+    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", NULL}};
+    int length;
+    const char *name = zt_options_name(&length, options);
+    char *title = strndup(name, (size_t)length);
+    if (!title) return ZT_EMEMORY;
+    wishes[0].value = title;
+    memcpy(wishes + 1, options->output_options, sizeof options->output_options);
+    zt_status status =
+        zt_output_open(output, target, format, wishes, zt_report_listener(report));
+    free(title);
+    return status;
+}
+
 /* Opens the output, renders the frames into it, and closes it whatever happened. */
 static zt_status write_frames(zt_renderer *renderer, const zt_options *options, int64_t first,
                               int64_t last, const char *target, zt_report *report) {
@@ -123,8 +141,7 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options, 
     format.frame_count = last - first + 1;
     zt_output *output = NULL;
     listen_for_interrupts();
-    zt_status status = zt_output_open(&output, target, &format, options->output_options,
-                                      zt_report_listener(report));
+    zt_status status = open_output(&output, target, &format, options, report);
     if (status != ZT_OK) return status;
     zt_progress progress = zt_progress_begin(report, last - first + 1);
     status = render_frames(renderer, &options->budget, first, last, output, &progress);

@@ -62,6 +62,16 @@ static void say_unknown_command(zt_report *report, const char *word) {
         zt_report_say(report, ZT_ERROR, "unknown command %s; zoetrope --help lists them", word);
 }
 
+static bool add_set(zt_options *options, const char *name, const char *value,
+                    zt_report *report) {
+    if (options->set_count == ZT_SETS_MAX) {
+        zt_report_say(report, ZT_ERROR, "more than %d times --set", ZT_SETS_MAX);
+        return false;
+    }
+    options->sets[options->set_count++] = (zt_override){name, value};
+    return true;
+}
+
 static bool take_set(zt_options *options, char *text, zt_report *report) {
     char *equals = strchr(text, '=');
     if (!equals || equals == text) {
@@ -69,12 +79,19 @@ static bool take_set(zt_options *options, char *text, zt_report *report) {
                       "--set %s: must be a name and a value, such as lamp.intensity=40", text);
         return false;
     }
-    if (options->set_count == ZT_SETS_MAX) {
-        zt_report_say(report, ZT_ERROR, "more than %d times --set", ZT_SETS_MAX);
+    *equals = '\0';
+    return add_set(options, text, equals + 1, report);
+}
+
+/* An option that is the output's own; the last of the list stays without a name. */
+static bool pass_on(zt_options *options, const char *name, const char *value,
+                    zt_report *report) {
+    if (options->output_option_count == ZT_OUTPUT_OPTIONS_MAX) {
+        zt_report_say(report, ZT_ERROR, "more than %d options for the output",
+                      ZT_OUTPUT_OPTIONS_MAX);
         return false;
     }
-    *equals = '\0';
-    options->sets[options->set_count++] = (zt_override){text, equals + 1};
+    options->output_options[options->output_option_count++] = (zt_output_option){name, value};
     return true;
 }
 
@@ -98,7 +115,9 @@ static int take_option(arguments *sorted, int i, char **argv, zt_report *report)
         return 0;
     }
     sorted->values[option] = row->example ? value : "";
-    bool good = option != ZT_OPTION_SET || (value && take_set(sorted->options, value, report));
+    bool good = true;
+    if (option == ZT_OPTION_SET) good = value && take_set(sorted->options, value, report);
+    if (row->is_of_output) good = pass_on(sorted->options, row->name, value, report);
     return good ? i : 0;
 }
 
@@ -297,15 +316,52 @@ static bool fit_together(const char *const *values, zt_report *report) {
     return true;
 }
 
-/* Options that are the output's own, by the same names. */
-static const zt_option of_output[] = {ZT_OPTION_PRESET};
+/* "64", or "4-64" where an error is given as well. */
+static bool read_samples(int64_t *min, int64_t *max, const char *text, const char *error,
+                         zt_report *report) {
+    const char *rest = text;
+    bool good = read_digits(max, &rest, SAMPLES_MAX) && *max > 0;
+    *min = 0;
+    if (good && *rest == '-') {
+        *min = *max;
+        rest++;
+        good = *min > 0 && read_digits(max, &rest, SAMPLES_MAX) && *min <= *max;
+    }
+    good = good && !*rest;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--samples %s: must be a number from 1 to %d, or a range, such as 4-64",
+                      text, SAMPLES_MAX);
+    else if (*min && !error)
+        zt_report_say(report, ZT_ERROR, "--samples %s needs --error, such as --error=0.002",
+                      text);
+    return good && (!*min || error);
+}
 
-static void pass_on(zt_options *options, const char *const *values) {
-    zt_output_option *next = options->output_options;
-    for (size_t i = 0; i < sizeof of_output / sizeof *of_output; i++)
-        if (values[of_output[i]])
-            *next++ =
-                (zt_output_option){zt_options_known[of_output[i]].name, values[of_output[i]]};
+/* What is said of sampling stands in for the description's words; a number of samples by itself
+ * does so for all of them. */
+static bool set_sampling(zt_options *options, const char *const *values, zt_report *report) {
+    const char *samples = values[ZT_OPTION_SAMPLES], *error = values[ZT_OPTION_ERROR],
+               *quality = values[ZT_OPTION_QUALITY], *filter = values[ZT_OPTION_FILTER];
+    char *text = options->samples;
+    size_t size = sizeof options->samples;
+    int64_t min = 0, max = 0;
+    if (quality && !add_set(options, "film.quality", quality, report)) return false;
+    if (filter && !add_set(options, "film.filter", filter, report)) return false;
+    if (samples && !read_samples(&min, &max, samples, error, report)) return false;
+    if (!error && !quality) {
+        options->settings.samples = (int)max;
+        return true;
+    }
+    if (error && min)
+        snprintf(text, size, "{min: %" PRId64 ", max: %" PRId64 ", error: %s}", min, max, error);
+    else if (error && max)
+        snprintf(text, size, "{max: %" PRId64 ", error: %s}", max, error);
+    else if (error)
+        snprintf(text, size, "{error: %s}", error);
+    else if (max)
+        snprintf(text, size, "%" PRId64, max);
+    return !*text || add_set(options, "film.samples", text, report);
 }
 
 static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
@@ -318,7 +374,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
             return false;
         }
     const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
-               *samples = values[ZT_OPTION_SAMPLES], *threads = values[ZT_OPTION_THREADS],
+               *threads = values[ZT_OPTION_THREADS],
                *precision = values[ZT_OPTION_PRECISION], *time = values[ZT_OPTION_TIME],
                *frame_time = values[ZT_OPTION_TIME_PER_FRAME], *pixel = values[ZT_OPTION_PIXEL],
                *sample = values[ZT_OPTION_SAMPLE];
@@ -329,7 +385,6 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     options->frame_list = values[ZT_OPTION_FRAME];
     options->filters = values[ZT_OPTION_FILTERS] != NULL;
     options->sample = -1;
-    pass_on(options, values);
     return fit_together(values, report) &&
            (!time || read_duration(&options->budget.film_s, ZT_OPTION_TIME, time, report)) &&
            (!frame_time || read_duration(&options->budget.frame_s, ZT_OPTION_TIME_PER_FRAME,
@@ -339,8 +394,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
            (!frames || read_frames(options, frames, report)) &&
            (!size || read_size(settings, size, report)) &&
            (!precision || read_precision(settings, precision, report)) &&
-           (!samples ||
-            read_count(&settings->samples, ZT_OPTION_SAMPLES, samples, SAMPLES_MAX, report)) &&
+           set_sampling(options, values, report) &&
            (!threads ||
             read_count(&settings->threads, ZT_OPTION_THREADS, threads, THREADS_MAX, report));
 }
@@ -375,12 +429,18 @@ zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report
     return understand(options, &sorted, report);
 }
 
-char *zt_options_target(const zt_options *options) {
-    if (options->target) return strdup(options->target);
+const char *zt_options_name(int *length, const zt_options *options) {
     const char *slash = strrchr(options->file, '/');
     const char *name = slash ? slash + 1 : options->file;
     const char *dot = strrchr(name, '.');
-    int length = (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    *length = (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    return name;
+}
+
+char *zt_options_target(const zt_options *options) {
+    if (options->target) return strdup(options->target);
+    int length;
+    const char *name = zt_options_name(&length, options);
     char *target = NULL;
     int printed = 0;
     switch (options->command) {

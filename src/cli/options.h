@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 
-enum { ZT_SETS_MAX = 256 };
+enum { ZT_SETS_MAX = 256, ZT_OUTPUT_OPTIONS_MAX = 64 };
 
 typedef struct zt_options {
     zt_command command;
@@ -21,18 +21,20 @@ typedef struct zt_options {
     bool filters;                  /* of report: each of them */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;
-    bool all_frames;                                  /* else first .. last, both included */
-    int64_t first, last;                              /* 0 <= first <= last */
-    zt_render_settings settings;                      /* zero where not given */
-    zt_budget budget;                                 /* likewise */
-    const char *manifest;                             /* to go by, or NULL */
-    bool replays;                                     /* a pixel, instead of an image */
-    int column, row;                                  /* of it */
-    int sample;                                       /* of it; -1: all */
-    zt_output_option output_options[ZT_OPTION_COUNT]; /* the last has no name */
+    bool all_frames;             /* else first .. last, both included */
+    int64_t first, last;         /* 0 <= first <= last */
+    zt_render_settings settings; /* zero where not given */
+    zt_budget budget;            /* likewise */
+    const char *manifest;        /* to go by, or NULL */
+    bool replays;                /* a pixel, instead of an image */
+    int column, row;             /* of it */
+    int sample;                  /* of it; -1: all */
+    zt_output_option output_options[ZT_OUTPUT_OPTIONS_MAX + 1]; /* the last has no name */
+    int output_option_count;
     bool quiet;
-    zt_override sets[ZT_SETS_MAX]; /* what --set replaces in the description */
+    zt_override sets[ZT_SETS_MAX]; /* what --set and others replace in the description */
     int set_count;
+    char samples[96]; /* one of these: "{min: 4, max: 64, error: 0.002}" */
 } zt_options;
 
 typedef enum zt_request {
@@ -46,6 +48,9 @@ typedef enum zt_request {
  * its begin; its texts stay its own, and that of --set is cut at its "=".
  */
 zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report);
+
+/* The description's name without its directory and ending; not terminated. */
+const char *zt_options_name(int *length, const zt_options *options);
 
 /* Where the images go: as told, or output/ and the description's name with an ending by the
  * command. Of the caller to free; NULL when out of memory. */
