@@ -135,7 +135,7 @@ static void counts_are_smooth(void **state) {
         for (int i = 1; i < 200; i++) {
             double ratio = a & 2 ? o.sampling[i].error / o.sampling[i - 1].error
                                  : (double)o.sampling[i].max / o.sampling[i - 1].max;
-            double step = a & 2 ? 1.05 : 1.12 + 1.0 / o.sampling[i].max;
+            double step = a & 2 ? 1.06 : 1.15 + 1.0 / o.sampling[i].max;
             assert_true(ratio < step && ratio > 1 / step);
         }
     }
