@@ -354,7 +354,8 @@ static bool set_sampling(zt_options *options, const char *const *values, zt_repo
         return true;
     }
     if (error && min)
-        snprintf(text, size, "{min: %" PRId64 ", max: %" PRId64 ", error: %s}", min, max, error);
+        snprintf(text, size, "{min: %" PRId64 ", max: %" PRId64 ", error: %s}", min, max,
+                 error);
     else if (error && max)
         snprintf(text, size, "{max: %" PRId64 ", error: %s}", max, error);
     else if (error)
@@ -374,10 +375,9 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
             return false;
         }
     const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
-               *threads = values[ZT_OPTION_THREADS],
-               *precision = values[ZT_OPTION_PRECISION], *time = values[ZT_OPTION_TIME],
-               *frame_time = values[ZT_OPTION_TIME_PER_FRAME], *pixel = values[ZT_OPTION_PIXEL],
-               *sample = values[ZT_OPTION_SAMPLE];
+               *threads = values[ZT_OPTION_THREADS], *precision = values[ZT_OPTION_PRECISION],
+               *time = values[ZT_OPTION_TIME], *frame_time = values[ZT_OPTION_TIME_PER_FRAME],
+               *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE];
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
