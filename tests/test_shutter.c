@@ -61,7 +61,8 @@ static shot shoot(const zt_animation *film, int64_t frame) {
     return shoot_with(film, frame, (zt_sampling){.min = 1, .max = 1});
 }
 
-/* ---- what there is to be seen -------------------------------------------------------------*/
+/* ---- what there is to be seen ---------------------------------------------------------------
+ */
 
 /* A camera as a frame of axes: the picture spans -1 .. 1 in height. */
 typedef struct eye {
@@ -153,7 +154,7 @@ static sight exposed(const zt_exposure *exposure, const sight *moments, double f
 }
 
 /* How far in the picture anything is from where it truly is, at most: at each 1/4096 of the
- * opening, and between them. `most_shares` leaves out the worst of so many times. */
+ * opening, and between them. The worst `left_out` times are left out. */
 static double dense_error(const zt_animation *film, int64_t frame, const shot *s,
                           int left_out) {
     const zt_exposure *e = &s->exposure;
@@ -185,7 +186,8 @@ static double dense_error(const zt_animation *film, int64_t frame, const shot *s
     return worst[left_out];
 }
 
-/* ---- curved motion ------------------------------------------------------------------------*/
+/* ---- curved motion --------------------------------------------------------------------------
+ */
 
 #define WHEEL(turn)                                                                            \
     "objects:\n"                                                                               \
@@ -198,8 +200,6 @@ static double dense_error(const zt_animation *film, int64_t frame, const shot *s
     "        - box: { center: [0, 0, 0], size: [2, 0.1, 0.1], material: {} }\n"                \
     "        - box: { center: [0, 0, 0], size: [0.1, 2, 0.1], material: {} }\n"
 
-#define NOISE "[= 0.05 * noise(30 * t), = 1 + 0.05 * noise(30 * t + 100), 6]"
-
 static const struct {
     const char *name, *shutter, *camera, *lines;
     int least, most; /* moments */
@@ -211,7 +211,6 @@ static const struct {
      "objects:\n  - sphere: { radius: 0.5, center: { curve: linear, keys: { 0 s: [-200, 1, 0], "
      "10 s: [200, 1, 0] } }, material: {} }\n",
      2, 2, 1e-6, 0},
-    /* Half a turn in 180 degrees at 24 frames a second is a turn and a half a second ... */
     {"wheel, 10 turns a second", "180 deg", still_camera, WHEEL("3600 deg"), 9, 40, 0.25, 0},
     {"propeller, 60 turns a second", "180 deg", still_camera, WHEEL("21600 deg"), 60, 200, 0.25,
      0},
@@ -320,7 +319,8 @@ static void curved_motion(void **state) {
     assert_true(good);
 }
 
-/* ---- what else may change -----------------------------------------------------------------*/
+/* ---- what else may change -------------------------------------------------------------------
+ */
 
 /* Colors and intensities that curve, held against the true ones, as shares of the largest. */
 static void curved_looks(void **state) {
@@ -385,7 +385,8 @@ static void switches(void **state) {
     zt_animation_free(&film);
 }
 
-/* ---- what does not move -------------------------------------------------------------------*/
+/* ---- what does not move ---------------------------------------------------------------------
+ */
 
 static const char one_second[] = "objects:\n"
                                  "  - sphere: { name: ball, radius: 0.5, center: { curve: "
@@ -428,7 +429,8 @@ static void one_moment(void **state) {
     }
 }
 
-/* ---- keys of random numbers ---------------------------------------------------------------*/
+/* ---- keys of random numbers -----------------------------------------------------------------
+ */
 
 /* The same for frames that show the same, another one for each that does not: so of frames
  * anywhere in a film, in any order, with the shutter open or not. */
@@ -501,7 +503,8 @@ static void seeds(void **state) {
     zt_animation_free(&film);
 }
 
-/* ---- limits -------------------------------------------------------------------------------*/
+/* ---- limits ---------------------------------------------------------------------------------
+ */
 
 /* Ten thousand balls that fall straight, each by itself, are looked at a few times; so are as
  * many that fly on smooth curves whose keys fall anywhere. */
@@ -537,9 +540,9 @@ static void many_things(void **state) {
         shot s = shoot(film, 13);
         zt_arena_reset(&s.arena);
         begin_s = zt_clock_s();
-        assert_int_equal(zt_shutter_expose(&s.exposure, &s.division, film, 12, HEIGHT, &s.arena,
-                                           deaf),
-                         ZT_OK);
+        assert_int_equal(
+            zt_shutter_expose(&s.exposure, &s.division, film, 12, HEIGHT, &s.arena, deaf),
+            ZT_OK);
         double expose_s = zt_clock_s() - begin_s;
         if (getenv("ZT_TEST_PRINTS"))
             print_message("%d moments in %.1f ms, a scene in %.1f ms\n",

@@ -8,7 +8,8 @@
 #include "keyframe/advice.h"
 #include "sequence/renderer.h"
 
-/* ---- precision ----------------------------------------------------------------------------*/
+/* ---- precision ------------------------------------------------------------------------------
+ */
 
 /* What asks for double precision. */
 static void say_why(char *text, size_t size, const zt_accuracy *a, const zt_scene *scene,
@@ -83,7 +84,8 @@ static void say_precision(zt_frame_choices *choices, const zt_renderer *r,
                  ready->precision == ZT_PRECISION_SINGLE ? "single" : "double", why);
 }
 
-/* ---- motion -------------------------------------------------------------------------------*/
+/* ---- motion ---------------------------------------------------------------------------------
+ */
 
 static const char *name_of(const zt_animation *animation, zt_part_thing thing) {
     return zt_advice_name_of(animation, thing.owner, thing.index).text;
@@ -121,7 +123,8 @@ static void say_motion(char *text, size_t size, const zt_division *d,
                  d->off > 1 ? "; that is more than can be met" : "");
 }
 
-/* ---- both ---------------------------------------------------------------------------------*/
+/* ---- both -----------------------------------------------------------------------------------
+ */
 
 static uint64_t add_thing(uint64_t key, zt_part_thing thing) {
     return zt_random_key(zt_random_key(key, thing.owner), (uint64_t)thing.index);

@@ -6,7 +6,8 @@
 #include "scene/clearance.h"
 #include "sequence/marks.h"
 
-/* ---- what moves ---------------------------------------------------------------------------*/
+/* ---- what moves -----------------------------------------------------------------------------
+ */
 
 static void add(zt_chords *chords, zt_part part, int mark_count) {
     part.first = chords->mark_count;
@@ -31,8 +32,8 @@ static void add_object(zt_chords *chords, const zt_scene *scene, int32_t index, 
     const zt_object *object = &scene->objects[index];
     const xform *world = &chords->worlds[index];
     zt_part part = {.kind = ZT_PART_OBJECT, .index = index, .by = by};
-    vec3 marks[ZT_MARKS_MAX];
     if (object->shape != ZT_SHAPE_PLANE) {
+        vec3 marks[ZT_MARKS_MAX];
         int count = zt_marks_of_object(marks, object, world, scene->meshes);
         if (count > 0) add(chords, part, count);
         return;
@@ -144,18 +145,19 @@ zt_status zt_chords_open(zt_chords *chords, zt_glance **first, const zt_animatio
     zt_scene_worlds(chords->worlds, &scene, chords->origin);
     find_distances(chords, &scene);
     ZT_TRY(find_parts(chords, &scene, arena));
-    zt_glance *look = ZT_PUSH(arena, zt_glance, 1);
-    if (!look) return ZT_EMEMORY;
-    *look = (zt_glance){.scene = scene,
-                        .marks = ZT_PUSH(arena, vec3, (size_t)chords->mark_count),
-                        .allowed = ZT_PUSH(arena, double, (size_t)chords->part_count)};
-    if (!look->marks || !look->allowed) return ZT_EMEMORY;
-    zt_marks_make(look, chords);
-    *first = look;
+    zt_glance *glance = ZT_PUSH(arena, zt_glance, 1);
+    if (!glance) return ZT_EMEMORY;
+    *glance = (zt_glance){.scene = scene,
+                          .marks = ZT_PUSH(arena, vec3, (size_t)chords->mark_count),
+                          .allowed = ZT_PUSH(arena, double, (size_t)chords->part_count)};
+    if (!glance->marks || !glance->allowed) return ZT_EMEMORY;
+    zt_marks_make(glance, chords);
+    *first = glance;
     return ZT_OK;
 }
 
-/* ---- looks --------------------------------------------------------------------------------*/
+/* ---- glances --------------------------------------------------------------------------------
+ */
 
 size_t zt_chords_glance_size(const zt_chords *chords) {
     const zt_scene *scene = &chords->animation->rest;
@@ -168,27 +170,28 @@ size_t zt_chords_glance_size(const zt_chords *chords) {
 
 zt_glance *zt_glance_push(const zt_chords *chords, zt_arena *arena) {
     const zt_scene *rest = &chords->animation->rest;
-    zt_glance *look = ZT_PUSH(arena, zt_glance, 1);
-    if (!look) return NULL;
-    zt_scene *scene = &look->scene;
+    zt_glance *glance = ZT_PUSH(arena, zt_glance, 1);
+    if (!glance) return NULL;
+    zt_scene *scene = &glance->scene;
     *scene = *rest;
     scene->materials = ZT_PUSH(arena, zt_material, (size_t)rest->material_count);
     scene->lights = ZT_PUSH(arena, zt_light, (size_t)rest->light_count);
     scene->objects = ZT_PUSH(arena, zt_object, (size_t)rest->object_count);
-    look->marks = ZT_PUSH(arena, vec3, (size_t)chords->mark_count);
-    look->allowed = ZT_PUSH(arena, double, (size_t)chords->part_count);
-    bool all = scene->materials && scene->lights && scene->objects && look->marks;
-    return all && look->allowed ? look : NULL;
+    glance->marks = ZT_PUSH(arena, vec3, (size_t)chords->mark_count);
+    glance->allowed = ZT_PUSH(arena, double, (size_t)chords->part_count);
+    bool all = scene->materials && scene->lights && scene->objects && glance->marks;
+    return all && glance->allowed ? glance : NULL;
 }
 
-zt_status zt_glance_at(zt_glance *look, const zt_chords *chords, double time_s,
+zt_status zt_glance_at(zt_glance *glance, const zt_chords *chords, double time_s,
                        zt_listener listener) {
-    ZT_TRY(zt_animation_freeze_again(&look->scene, chords->animation, time_s, listener));
-    zt_marks_make(look, chords);
+    ZT_TRY(zt_animation_freeze_again(&glance->scene, chords->animation, time_s, listener));
+    zt_marks_make(glance, chords);
     return ZT_OK;
 }
 
-/* ---- chords -------------------------------------------------------------------------------*/
+/* ---- chords ---------------------------------------------------------------------------------
+ */
 
 zt_gap zt_chords_gap(const zt_chords *chords, const zt_glance *a, const zt_glance *b,
                      const zt_glance *t, double between) {

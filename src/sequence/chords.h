@@ -33,22 +33,22 @@ struct zt_glance {
     zt_scene scene;
     vec3 *marks;     /* points of each part, that go straight where the tracer's numbers do */
     double *allowed; /* how far those of each part may be off */
-    zt_glance *next; /* in a list of looks that are free */
+    zt_glance *next; /* in a list of those that are free */
 };
 
-/* Finds what the tracks move, and looks at the first moment. `first` is NULL where there are
- * only tracks that no ray can tell. Fails as zt_animation_freeze does. */
+/* Finds what the tracks move, and looks at the first moment. Fails as zt_animation_freeze does.
+ */
 zt_status zt_chords_open(zt_chords *chords, zt_glance **first, const zt_animation *animation,
                          double time_s, int height, zt_arena *arena, zt_listener listener);
 
-/* What a look takes: bytes. */
+/* What a glance takes: bytes. */
 size_t zt_chords_glance_size(const zt_chords *chords);
 
-/* Room for a look; NULL when out of memory. */
+/* Room for a glance; NULL when out of memory. */
 zt_glance *zt_glance_push(const zt_chords *chords, zt_arena *arena);
 
 /* Looks at another moment. Fails as zt_animation_freeze does. */
-zt_status zt_glance_at(zt_glance *look, const zt_chords *chords, double time_s,
+zt_status zt_glance_at(zt_glance *glance, const zt_chords *chords, double time_s,
                        zt_listener listener);
 
 /* What is off most, as a share of what is allowed. */

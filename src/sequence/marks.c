@@ -8,7 +8,8 @@
 #define PATTERN_SIZE_SHARE  (1.0 / 8192)
 #define PATTERN_ANGLE_SHARE (1.0 / 2048)
 
-/* ---- points -------------------------------------------------------------------------------*/
+/* ---- points ---------------------------------------------------------------------------------
+ */
 
 /* The corners of the block from center - x - y - z to center + x + y + z. */
 static vec3 *put_corners(vec3 *out, const xform *block) {
@@ -120,7 +121,8 @@ double zt_marks_plane(vec3 *normal, const zt_plane *plane, const xform *world) {
            vec3_dot(*normal, world->shift);
 }
 
-/* ---- what a look allows -------------------------------------------------------------------*/
+/* ---- what a glance allows ---------------------------------------------------------------------
+ */
 
 static double pixels_at(const zt_pixel *pixel, double distance) {
     return ZT_CHORD_PIXELS * (pixel->width + pixel->angle * distance);

@@ -248,7 +248,8 @@ static zt_status divide(opening *o) {
     return ZT_OK;
 }
 
-/* ---- what comes of it ---------------------------------------------------------------------*/
+/* ---- what comes of it -----------------------------------------------------------------------
+ */
 
 static zt_status write_exposure(zt_exposure *exposure, const opening *o) {
     size_t count = (size_t)o->moment_count;
