@@ -15,6 +15,7 @@
 #define ZT_ISA base
 #include "scenes.h"
 #include "tracer/intersect.h"
+#include "tracer/motion_meet.h"
 #include "tracer/prepare.h"
 
 extern const zt_kernel ZT_KERNEL_NAME(zt_kernel);
@@ -166,6 +167,32 @@ static void make_scene(test_scene *s, uint64_t *seed, int things) {
         scene_point_light(s, vec3_scale(test_direction(seed), test_between(seed, 0, 9)), 1);
 }
 
+/* Carries, turns and grows about half of the things, by more at each moment. */
+static void carry(test_scene *s, uint64_t seed, double amount) {
+    for (int32_t i = 0; i < s->scene.object_count; i++) {
+        zt_object *o = &s->objects[i];
+        vec3 way = vec3_scale(test_direction(&seed), amount * test_random(&seed));
+        vec3 axis = test_direction(&seed);
+        bool turns = o->shape == ZT_SHAPE_MESH || o->shape == ZT_SHAPE_GROUP;
+        if (test_random(&seed) < (o->shape == ZT_SHAPE_GROUP ? .8 : .5)) continue;
+        if (o->shape == ZT_SHAPE_PLANE)
+            o->plane.distance += amount;
+        else if (o->shape == ZT_SHAPE_TRIANGLE)
+            o->triangle.vertices[0] = vec3_add(o->triangle.vertices[0], way);
+        else if (o->shape >= ZT_SHAPE_CYLINDER && o->shape <= ZT_SHAPE_CAPSULE &&
+                 o->shape != ZT_SHAPE_TORUS) {
+            o->tube.from = vec3_add(o->tube.from, way);
+            o->tube.radius *= 1 + .3 * amount;
+        } else if (turns) {
+            o->placement.rotation =
+                quat_mul(quat_axis_angle(axis, .5 * amount), o->placement.rotation);
+            o->placement.position = vec3_add(o->placement.position, way);
+        } else { /* they all begin with their centers */
+            o->sphere.center = vec3_add(o->sphere.center, way);
+        }
+    }
+}
+
 /* ---- the plain loop -----------------------------------------------------------------------
  */
 
@@ -177,35 +204,44 @@ typedef struct stage {
     zt_tracer pieces; /* asked one by one, and only the pieces */
     int32_t object_count;
     int32_t meshes_of[SCENE_OBJECTS_MAX]; /* the primitive of each mesh, in order */
+    zt_exposure exposure;
 } stage;
 
-static zt_tracer *prepare(const zt_scene *scene, zt_meshes *meshes, zt_arena *arena) {
+static zt_tracer *prepare(const zt_exposure *exposure, zt_meshes *meshes, zt_arena *arena) {
     zt_tracer *tracer;
     zt_extent *extents;
     int32_t count;
-    zt_exposure exposure = zt_exposure_of(scene);
     assert_int_equal(
-        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, &exposure, meshes, arena), ZT_OK);
+        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, exposure, meshes, arena), ZT_OK);
     assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }
 
-static void set_stage(stage *st, test_scene *s) {
+enum { MOMENTS_MAX = 4 };
+static zt_scene scenes[MOMENTS_MAX];
+
+/* Of scenes that have the same things, at moments of an exposure. */
+static void set_stage(stage *st, test_scene *s, int moments) {
+    static const double times[][MOMENTS_MAX] = {{0}, {0, 1}, {0, .25, 1}, {0, .125, .75, 1}};
+    static const bool steps[MOMENTS_MAX] = {false};
     st->arena = (zt_arena){0};
-    st->tracer = prepare(&s->scene, st->meshes, &st->arena);
-    assert_true(st->tracer->tie == 0);
+    st->exposure = (zt_exposure){scenes, times[moments - 1], steps, moments};
+    for (int m = 0; m < moments; m++) scenes[m] = s[m].scene;
+    st->tracer = prepare(&st->exposure, st->meshes, &st->arena);
     st->object_count = s->scene.object_count;
     int placed = 0;
     for (int32_t i = 0; i < st->tracer->primitive_count; i++)
         if (st->tracer->primitives[i].kind == ZT_PRIMITIVE_MESH) st->meshes_of[placed++] = i;
-    for (int m = 0; m < placed; m++)
-        for (int k = 0; k < PARTS; k++) {
-            zt_object *o = scene_object(s, ZT_SHAPE_MESH, 0);
-            *o = s->objects[st->tracer->primitives[st->meshes_of[m]].object];
-            o->mesh = 1 + k;
+    for (int m = 0; m < moments; m++) {
+        for (int k = 0; k < placed * PARTS; k++) {
+            int32_t mesh = st->tracer->primitives[st->meshes_of[k / PARTS]].object;
+            zt_object *o = scene_object(&s[m], ZT_SHAPE_MESH, 0);
+            *o = s[m].objects[mesh];
+            o->mesh = 1 + k % PARTS;
         }
-    st->pieces = *prepare(&s->scene, st->piece_meshes, &st->arena);
-    s->scene.object_count = st->object_count;
+        scenes[m] = s[m].scene;
+    }
+    st->pieces = *prepare(&st->exposure, st->piece_meshes, &st->arena);
     /* None is turned away by halves of its bounds. */
     for (int32_t i = 0; i < st->pieces.placed_count; i++) {
         zt_bvh_box *boxes = st->pieces.placed[i].built->hull->boxes;
@@ -226,11 +262,37 @@ static const zt_bundle anywhere = {.origins = {{-1e30, -1e30, -1e30}, {1e30, 1e3
                                    .directions = {{-1, -1, -1}, {1, 1, 1}},
                                    .source = -1};
 
-static real distance_of(const zt_primitive *p, const zt_batch *rays, int i, int32_t leaving) {
+static int32_t leaving(const zt_batch *rays, int i, int32_t index) {
+    int32_t source = rays->from->source[i];
+    return source < 0 || source >> 1 != index ? 0 : source & 1 ? -1 : 1;
+}
+
+/* Of what moves, the one number there is comes from the loop that is asked about all. */
+static real moving_distance(const zt_tracer *tracer, int32_t index, const zt_batch *rays,
+                            int i) {
+    static zt_batch one;
+    int first = i / ZT_BATCH_LANES * ZT_BATCH_LANES;
+    one.from = rays->from;
+    one.count = rays->count;
+    for (int k = first; k < first + ZT_BATCH_LANES; k++) {
+        one.dx[k] = rays->dx[k], one.dy[k] = rays->dy[k], one.dz[k] = rays->dz[k];
+        one.t[k] = REAL_INFINITY, one.hit[k] = -1;
+    }
+    zt_tracer plain = *tracer;
+    plain.tie = 0;
+    ZT_KERNEL_NAME(zt_meet_moving)(&one, &plain, index, first, first + ZT_BATCH_LANES, false);
+    return one.t[i];
+}
+
+static real distance_of(const zt_tracer *tracer, int32_t index, const zt_batch *rays, int i) {
+    const zt_primitive *p = &tracer->primitives[index];
     const zt_origins *o = rays->from;
+    int32_t left = leaving(rays, i, index);
+    if (p->kind != ZT_PRIMITIVE_MESH && p->poses)
+        return moving_distance(tracer, index, rays, i);
 #define DISTANCE(kind)                                                                         \
     zt_##kind##_distance(p, o->x[i], o->y[i], o->z[i], rays->dx[i], rays->dy[i], rays->dz[i],  \
-                         leaving)
+                         left)
     switch (p->kind) {
     case ZT_PRIMITIVE_PLANE:
         return DISTANCE(plane);
@@ -257,11 +319,6 @@ static real distance_of(const zt_primitive *p, const zt_batch *rays, int i, int3
     }
 }
 
-static int32_t leaving(const zt_batch *rays, int i, int32_t index) {
-    int32_t source = rays->from->source[i];
-    return source < 0 || source >> 1 != index ? 0 : source & 1 ? -1 : 1;
-}
-
 static void plain_nearest(zt_batch *rays, const stage *st) {
     static zt_batch pieces;
     pieces = *rays;
@@ -271,7 +328,7 @@ static void plain_nearest(zt_batch *rays, const stage *st) {
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
         for (int32_t p = 0; p < st->tracer->primitive_count; p++) {
-            real t = distance_of(&st->tracer->primitives[p], rays, i, leaving(rays, i, p));
+            real t = distance_of(st->tracer, p, rays, i);
             if (t < rays->t[i]) rays->t[i] = t, rays->hit[i] = p;
         }
         if (st->pieces.single_count == 0 || pieces.hit[i] < 0) continue;
@@ -296,7 +353,7 @@ static void plain_any(zt_batch *rays, const stage *st) {
     for (int i = 0; i < rays->count; i++) {
         if (pieces.hit[i] >= 0) rays->hit[i] = INT32_MAX;
         for (int32_t p = 0; p < st->tracer->primitive_count; p++) {
-            real t = distance_of(&st->tracer->primitives[p], rays, i, leaving(rays, i, p));
+            real t = distance_of(st->tracer, p, rays, i);
             real near = rays->from->near[i];
             if (t > near && t * (1 + TIE) + near < rays->t[i]) rays->hit[i] = p;
         }
@@ -396,6 +453,22 @@ static void compare_shadows(const zt_batch *rays, const stage *st, real3 lamp) {
 
 static zt_origins from;
 static zt_batch rays;
+static double times[ZT_BATCH]; /* of rays, where something moves */
+
+/* At one time all, or each at its own. */
+static void set_times(uint64_t *seed) {
+    double time = test_random(seed);
+    bool one = test_random(seed) < .3;
+    for (int i = 0; i < ZT_BATCH; i++)
+        times[i] = floor((one ? time : test_random(seed)) * 65536) / 65536;
+}
+
+static void set_moments(const stage *st) {
+    if (!st->tracer->moves) return;
+    for (int i = 0; i < ZT_BATCH; i++)
+        from.between[i] = (real)zt_exposure_find(&from.moment[i], &st->exposure,
+                                                 st->tracer->moment_at, times[i]);
+}
 
 static void set_ray(int i, vec3 o, vec3 d, int32_t source) {
     from.x[i] = (real)o.x, from.y[i] = (real)o.y, from.z[i] = (real)o.z;
@@ -407,6 +480,8 @@ static void set_ray(int i, vec3 o, vec3 d, int32_t source) {
 /* Rays from the camera: narrow, wide, along an axis; to one of the things or anywhere. */
 static void camera_rays(uint64_t *seed, int batch, const stage *st) {
     rays.from = &from;
+    set_times(seed);
+    set_moments(st);
     rays.count = 1 + (int)(test_random(seed) * ZT_BATCH);
     vec3 along = test_direction(seed);
     const zt_primitive *p =
@@ -471,8 +546,10 @@ static void outline_rays(uint64_t *seed, const stage *st) {
         within.dx[count] = within.dx[i], without.dx[count] = without.dx[i];
         within.dy[count] = within.dy[i], without.dy[count] = without.dy[i];
         within.dz[count] = within.dz[i], without.dz[count] = without.dz[i];
+        times[count] = times[i];
         count++;
     }
+    set_moments(st);
     rays.count = count;
     for (int step = 0; step < STEPS; step++) {
         for (int i = 0; i < count; i++) {
@@ -500,6 +577,7 @@ static void mirror_rays(zt_probe *probes, const stage *st, void *work, bool one)
         probes[i] = (zt_probe){
             .origin = {(double)from.x[i], (double)from.y[i], (double)from.z[i]},
             .direction = {(double)rays.dx[i], (double)rays.dy[i], (double)rays.dz[i]},
+            .time = times[i],
             .source = from.source[i]};
     ZT_KERNEL_NAME(zt_kernel).probe(st->tracer, probes, rays.count, work);
     int count = 0;
@@ -509,13 +587,16 @@ static void mirror_rays(zt_probe *probes, const stage *st, void *work, bool one)
         if (p->object < 0) continue;
         if (first < 0) first = p->object;
         if (one && p->object != first) continue;
+        times[count] = times[i];
         set_ray(count++, p->mirror_origin, p->mirror_direction, p->mirror_source);
     }
     rays.count = count;
+    set_moments(st);
 }
 
-static void compare_film(uint64_t *seed, int rounds, int least, int most, int batches) {
-    static test_scene s;
+static void compare_film(uint64_t *seed, int rounds, int least, int most, int batches,
+                         bool moves) {
+    static test_scene s[MOMENTS_MAX];
     static stage st;
     static zt_probe probes[ZT_BATCH];
     void *work = aligned_alloc(64, (ZT_KERNEL_NAME(zt_kernel).work_size + 63) / 64 * 64);
@@ -524,8 +605,16 @@ static void compare_film(uint64_t *seed, int rounds, int least, int most, int ba
     assert_int_equal(zt_meshes_open(&st.piece_meshes, models, MODELS, 1, (zt_listener){0}),
                      ZT_OK);
     for (int round = 0; round < rounds; round++) {
-        make_scene(&s, seed, least + (int)(test_random(seed) * (most - least + 1)));
-        set_stage(&st, &s);
+        int moments = moves ? 2 + round % 3 : 1,
+            things = least + (int)(test_random(seed) * (most - least + 1));
+        uint64_t before = *seed, way = before + 5;
+        for (int m = 0; m < moments; m++) {
+            *seed = before;
+            make_scene(&s[m], seed, things);
+            if (m > 0) carry(&s[m], way, .4 * m / (moments - 1));
+        }
+        set_stage(&st, s, moments);
+        if (!moves) assert_true(st.tracer->tie == 0);
         for (int batch = 0; batch < batches; batch++) {
             if (batch % 2)
                 outline_rays(seed, &st);
@@ -569,7 +658,7 @@ static void test_few(void **state) {
     (void)state;
     uint64_t seed = 1 + more;
     make_models(&seed);
-    compare_film(&seed, 250, 1, 20, 16);
+    compare_film(&seed, 250, 1, 20, 16, false);
     assert_all_met();
 }
 
@@ -578,13 +667,23 @@ static void test_crowd(void **state) {
     (void)state;
     uint64_t seed = 2 + more;
     make_models(&seed);
-    compare_film(&seed, 60, 50, 120, 16);
+    compare_film(&seed, 60, 50, 120, 16, false);
+    assert_all_met();
+}
+
+/* The same of what moves: each ray at its own time. */
+static void test_moving(void **state) {
+    (void)state;
+    uint64_t seed = 3 + more;
+    make_models(&seed);
+    compare_film(&seed, 80, 1, 20, 16, true);
+    compare_film(&seed, 12, 50, 120, 16, true);
     assert_all_met();
 }
 
 int main(int count, char **arguments) {
     if (count > 1) more = (uint64_t)atoll(arguments[1]);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_few),
-                                       cmocka_unit_test(test_crowd)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_few), cmocka_unit_test(test_crowd),
+                                       cmocka_unit_test(test_moving)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
