@@ -77,7 +77,8 @@ static void test_same_bits_moving(void **state) {
         moments[m] = all[m].scene;
     }
     for (int i = 0; i < ZT_BATCH; i++) {
-        vec3 d = {(i % 16 - 8) / 16., (i / 16 - 8) / 16. - .2, -1};
+        int row = i / 16;
+        vec3 d = {(i % 16 - 8) / 16., row / 16. - .7, -1};
         rays.oz[i] = rays.ox[i] = rays.oy[i] = 0;
         rays.dx[i] = d.x;
         rays.dy[i] = d.y;

@@ -26,9 +26,7 @@ typedef struct work {
     alignas(64) real sum_r[ZT_BATCH];
     alignas(64) real sum_g[ZT_BATCH];
     alignas(64) real sum_b[ZT_BATCH];
-    alignas(64) real lamp_r[ZT_BATCH];
-    alignas(64) real lamp_g[ZT_BATCH];
-    alignas(64) real lamp_b[ZT_BATCH];
+    zt_lamp_light lamp;
     alignas(64) uint32_t hidden[ZT_BATCH]; /* a hash of the lamps that something hides */
     alignas(64) int32_t wanted[ZT_BATCH];  /* which of the rays or points go on */
     alignas(64) int32_t list[ZT_BATCH];    /* the numbers of those */
@@ -152,9 +150,9 @@ static inline void give(work *restrict w, int k, bool hidden, real r, real g, re
     b = cut(b * w->points.color_b[k]);
     if (hidden) {
         bool wanted = r + g + b > 0;
-        w->lamp_r[k] = r;
-        w->lamp_g[k] = g;
-        w->lamp_b[k] = b;
+        w->lamp.r[k] = r;
+        w->lamp.g[k] = g;
+        w->lamp.b[k] = b;
         w->wanted[k] = wanted;
         shadow->dx[k] = way.x;
         shadow->dy[k] = way.y;
@@ -188,9 +186,9 @@ static inline void shine_from_places(work *restrict w, const zt_lamp *lamp, bool
                                      const zt_rays *given, uint32_t dimension, bool straight) {
     zt_batch *restrict shadow = &w->shadow;
     int padded = zt_batch_padded(w->points.count);
-    aim(shadow, w->lamp_r, w->lamp_g, w->lamp_b, lamp, &w->points, given, dimension, straight);
+    aim(&w->lamp, shadow, lamp, &w->points, given, dimension, straight);
     WIDE_LOOP for (int k = 0; k < padded; k++)
-        give(w, k, hidden, w->lamp_r[k], w->lamp_g[k], w->lamp_b[k],
+        give(w, k, hidden, w->lamp.r[k], w->lamp.g[k], w->lamp.b[k],
              (zt_lamp_way){shadow->dx[k], shadow->dy[k], shadow->dz[k], shadow->t[k], 0});
     shadow->count = w->points.count;
 }
@@ -217,9 +215,9 @@ static void add_lamp(work *restrict w) {
     int padded = zt_batch_padded(w->points.count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
         bool open = w->shadow.hit[k] < 0;
-        w->sum_r[k] += open ? w->lamp_r[k] : 0;
-        w->sum_g[k] += open ? w->lamp_g[k] : 0;
-        w->sum_b[k] += open ? w->lamp_b[k] : 0;
+        w->sum_r[k] += open ? w->lamp.r[k] : 0;
+        w->sum_g[k] += open ? w->lamp.g[k] : 0;
+        w->sum_b[k] += open ? w->lamp.b[k] : 0;
     }
 }
 

@@ -53,8 +53,8 @@ static LAMP_INLINE zt_lamp_pose pose_between(const zt_lamp_pose *p, real t, bool
 
 /* One lamp's work on a batch. */
 typedef struct task {
+    zt_lamp_light *light;
     zt_batch *shadow;
-    real *r, *g, *b;
     const zt_lamp *lamp;
     const zt_points *points;
     const places *at;
@@ -71,20 +71,20 @@ typedef void aim(const task *task);
         const zt_points *restrict p = task->points;                                            \
         const zt_lamp_pose *poses = task->lamp->poses, still = *poses;                         \
         const float *restrict us = task->at->u, *restrict vs = task->at->v;                    \
-        real *restrict r = task->r, *restrict g = task->g, *restrict b = task->b;              \
+        zt_lamp_light *restrict light = task->light;                                           \
         int padded = zt_batch_padded(p->count);                                                \
         WIDE_LOOP for (int k = 0; k < padded; k++) {                                           \
             zt_lamp_pose l = still;                                                            \
             if (moves)                                                                         \
-                l = pose_between(poses + (straight ? 0 : from->moment[k]), from->between[k],   \
-                                 turns);                                                       \
+                l = pose_between(poses + ((straight) ? 0 : from->moment[k]), from->between[k], \
+                                 (turns));                                                     \
             real px = from->x[k], py = from->y[k], pz = from->z[k];                            \
             real nx = p->nx[k], ny = p->ny[k], nz = p->nz[k];                                  \
             float u = us[k], v = vs[k];                                                        \
-            zt_lamp_way way = WAY;                                                             \
-            r[k] = l.power.x * way.fade;                                                       \
-            g[k] = l.power.y * way.fade;                                                       \
-            b[k] = l.power.z * way.fade;                                                       \
+            zt_lamp_way way = (WAY);                                                           \
+            light->r[k] = l.power.x * way.fade;                                                \
+            light->g[k] = l.power.y * way.fade;                                                \
+            light->b[k] = l.power.z * way.fade;                                                \
             shadow->dx[k] = way.x;                                                             \
             shadow->dy[k] = way.y;                                                             \
             shadow->dz[k] = way.z;                                                             \
@@ -117,15 +117,15 @@ static bool any_is_near(const task *task) {
     return any;
 }
 
-void ZT_KERNEL_NAME(zt_lamp_aim)(zt_batch *shadow, real *r, real *g, real *b,
-                                 const zt_lamp *lamp, const zt_points *points,
-                                 const zt_rays *given, uint32_t dimension, bool straight) {
+void ZT_KERNEL_NAME(zt_lamp_aim)(zt_lamp_light *light, zt_batch *shadow, const zt_lamp *lamp,
+                                 const zt_points *points, const zt_rays *given,
+                                 uint32_t dimension, bool straight) {
     static aim *const *const aims[] = {[ZT_LAMP_POINT] = point_aims,
                                        [ZT_LAMP_BALL] = ball_aims,
                                        [ZT_LAMP_DISK] = disk_aims,
                                        [ZT_LAMP_RECTANGLE] = rectangle_aims};
     places at;
-    task task = {shadow, r, g, b, lamp, points, &at};
+    task task = {light, shadow, lamp, points, &at};
     if (lamp->has_size)
         take_places(&at, points, given, dimension);
     else

@@ -221,7 +221,7 @@ static LAMP_INLINE zt_lamp_way zt_flat_way(const zt_lamp_pose *l, const zt_front
     real size = real_max(l->a, l->b);
     return (zt_lamp_way){qx * near, qy * near, qz * near,
                          real_max(distance - LAMP_SKIN * size, 0),
-                         (toward > 0) & (front->z > 0) ? fade : 0};
+                         ((toward > 0) & (front->z > 0)) ? fade : 0};
 }
 
 /* Of a rectangle: power / area, times the cosine, from all its front. By solid angle, all
@@ -289,12 +289,19 @@ static LAMP_INLINE zt_lamp_way zt_disk_way(const zt_lamp_pose *l, real px, real 
 /* ---- batches --------------------------------------------------------------------------------
  */
 
-/* What a lamp gives each of the points where nothing is in between: r, g and b, still to be
- * multiplied by the points' colors; and the directions and lengths (t) of the shadow rays.
- * Which random numbers: those of the `given` rays' keys in a dimension. `straight`: the
- * exposure has two moments only. */
-void ZT_KERNEL_NAME(zt_lamp_aim)(zt_batch *shadow, real *r, real *g, real *b,
-                                 const zt_lamp *lamp, const zt_points *points,
-                                 const zt_rays *given, uint32_t dimension, bool straight);
+/* What a lamp gives points, in each channel. */
+typedef struct zt_lamp_light {
+    alignas(64) real r[ZT_BATCH];
+    alignas(64) real g[ZT_BATCH];
+    alignas(64) real b[ZT_BATCH];
+} zt_lamp_light;
+
+/* What a lamp gives each of the points where nothing is in between, still to be multiplied by
+ * the points' colors; and the directions and lengths (t) of the shadow rays. Which random
+ * numbers: those of the `given` rays' keys in a dimension. `straight`: the exposure has two
+ * moments only. */
+void ZT_KERNEL_NAME(zt_lamp_aim)(zt_lamp_light *light, zt_batch *shadow, const zt_lamp *lamp,
+                                 const zt_points *points, const zt_rays *given,
+                                 uint32_t dimension, bool straight);
 
 #endif

@@ -2,7 +2,6 @@
  * the first. All is computed in double precision and rounded once, at the end. Compiled once
  * for each precision. */
 #include <math.h>
-#include <string.h>
 
 #include "tracer/prepare.h"
 #include "tracer/shapes.h"
@@ -35,6 +34,16 @@ static void hold(zt_box *box, const zt_light *light, vec3 eye) {
                         real_max(box->high.z, p.z + room)};
 }
 
+static bool same3(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+static bool same_light(const zt_light *a, const zt_light *b) {
+    quat p = a->rotation, q = b->rotation;
+    return same3(a->position, b->position) && same3(a->color, b->color) &&
+           a->intensity == b->intensity && a->shadows == b->shadows && a->radius == b->radius &&
+           a->width == b->width && a->height == b->height && p.w == q.w && p.x == q.x &&
+           p.y == q.y && p.z == q.z;
+}
+
 /* Makes light number i a lamp; `poses` is room for one at each moment. */
 static zt_lamp lamp_of(const zt_exposure *exposure, int32_t i, zt_lamp_pose *poses) {
     static const zt_lamp_kind kinds[] = {[ZT_LIGHT_POINT] = ZT_LAMP_BALL,
@@ -52,7 +61,7 @@ static zt_lamp lamp_of(const zt_exposure *exposure, int32_t i, zt_lamp_pose *pos
         const zt_light *light = &moments[m].lights[i];
         poses[m] = pose_of(light, eye);
         hold(&lamp.bounds, light, eye);
-        lamp.moves |= memcmp(light, first, sizeof *light) != 0;
+        lamp.moves |= !same_light(light, first);
         lamp.has_size |= zt_light_reach(light) > 0;
         lamp.shadows |= light->shadows;
     }
@@ -65,6 +74,7 @@ static zt_status prepare_ambient(zt_tracer *tracer, const zt_exposure *exposure,
                                  zt_arena *arena) {
     real3 *sums = ZT_PUSH(arena, real3, (size_t)exposure->moment_count);
     if (!sums) return ZT_EMEMORY;
+    vec3 first = {0, 0, 0};
     bool moves = false;
     for (int32_t m = 0; m < exposure->moment_count; m++) {
         const zt_scene *scene = &exposure->moments[m];
@@ -75,7 +85,8 @@ static zt_status prepare_ambient(zt_tracer *tracer, const zt_exposure *exposure,
                 sum = vec3_add(sum, vec3_scale(light->color, light->intensity));
         }
         sums[m] = to_real3(sum);
-        moves |= memcmp(&sums[m], &sums[0], sizeof *sums) != 0;
+        first = m == 0 ? sum : first;
+        moves |= !same3(sum, first);
     }
     tracer->ambient = sums[0];
     tracer->ambients = moves ? sums : NULL;
