@@ -1,7 +1,8 @@
 #include "base/usage.h"
 
-#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -17,7 +18,7 @@ int64_t zt_usage_peak(void) {
     char line[256];
     int64_t kib = 0;
     while (kib == 0 && file && fgets(line, sizeof line, file))
-        if (sscanf(line, "VmHWM: %" SCNd64, &kib) != 1) kib = 0;
+        if (strncmp(line, "VmHWM:", 6) == 0) kib = strtoll(line + 6, NULL, 10);
     if (file) fclose(file);
     struct rusage usage;
     if (kib == 0 && getrusage(RUSAGE_SELF, &usage) == 0) kib = usage.ru_maxrss;

@@ -19,14 +19,14 @@ const char *const zt_map_stops[ZT_MAP_STOP_COUNT] = {"#000004", "#51127c", "#b73
 
 static char *base64(const unsigned char *bytes, size_t count) {
     static const char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
     char *text = malloc((count + 2) / 3 * 4 + 1), *to = text;
     for (size_t i = 0; text && i < count; i += 3) {
         size_t left = count - i < 3 ? count - i : 3;
         unsigned group = 0;
         for (size_t k = 0; k < 3; k++) group = group << 8 | (k < left ? bytes[i + k] : 0);
         for (size_t k = 0; k < 4; k++)
-            *to++ = k <= left ? digits[group >> (18 - 6 * k) & 63] : '=';
+            *to++ = digits[k <= left ? group >> (18 - 6 * k) & 63 : 64];
     }
     if (text) *to = '\0';
     return text;

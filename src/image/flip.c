@@ -113,7 +113,7 @@ static void blur(double *const c[3], const eye *e) {
  * to 1 each. */
 static zt_kernel_1d derivative(double sigma, int radius, int order) {
     zt_kernel_1d kernel = {.radius = radius};
-    double values[2 * ZT_KERNEL_RADIUS_MAX + 1], above = 0, below = 0;
+    double values[2 * ZT_KERNEL_RADIUS_MAX + 1] = {0}, above = 0, below = 0;
     for (int i = -radius; i <= radius; i++) {
         double t = i / sigma, g = exp(-t * t / 2), v = order == 1 ? -t * g : (t * t - 1) * g;
         values[i + radius] = v;
