@@ -200,7 +200,7 @@ static void assert_tags(const AVStream *stream, const way *w, bool is_rgb) {
     if (w->tag) assert_int_equal(p->codec_tag, w->tag);
     if (holds_tags) {
         assert_int_equal(p->color_primaries, AVCOL_PRI_BT709);
-        assert_int_equal(p->color_trc, AVCOL_TRC_BT709);
+        assert_int_equal(p->color_trc, is_rgb ? AVCOL_TRC_IEC61966_2_1 : AVCOL_TRC_BT709);
         assert_int_equal(p->color_space, is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709);
         assert_int_equal(p->color_range, is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG);
     }
