@@ -83,6 +83,16 @@ static void find_surfaces(zt_points *restrict w, zt_origins *restrict from,
         WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, false);
 }
 
+/* A bit for each kind of primitive that points lie on, if it stands still. */
+static uint32_t kinds_of(const zt_points *restrict w, const zt_tracer *tracer) {
+    uint32_t kinds = 0;
+    for (int k = 0; k < w->count; k++) {
+        const zt_primitive *p = &tracer->primitives[w->primitive[k]];
+        kinds |= (uint32_t)!p->poses << p->kind;
+    }
+    return kinds;
+}
+
 /* Lists the points that lie on primitives of a kind that stand still. */
 static int list_kind(int32_t *restrict list, const zt_points *restrict w,
                      const zt_tracer *tracer, zt_primitive_kind kind) {
@@ -374,8 +384,9 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     if (tracer->changes) ZT_KERNEL_NAME(zt_change_colors)(w, from, tracer);
     if (tracer->moves) ZT_KERNEL_NAME(zt_find_moving)(w, from, tracer);
     int mesh_count = 0;
-    if (tracer->has_solids)
-        for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
+    uint32_t kinds = tracer->has_solids ? kinds_of(w, tracer) : 0;
+    for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
+        if (kinds >> kind & 1)
             solids[kind](w, from, tracer, list, list_kind(list, w, tracer, kind));
     if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
     find_meshes(w, rays, tracer, list, mesh_count);
