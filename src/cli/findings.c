@@ -23,8 +23,8 @@ enum { FITTED_MAX = 64 };
 /* Where the error bends, of counts that are powers of two: those between are spread less well,
  * and each of them would be a bend. */
 static int find_knee(const zt_findings *f) {
-    double time[FITTED_MAX], error[FITTED_MAX];
-    int rungs[FITTED_MAX], count = 0;
+    double time[FITTED_MAX] = {0}, error[FITTED_MAX] = {0};
+    int rungs[FITTED_MAX] = {0}, count = 0;
     for (int i = f->first_fitted; i < f->first_fitted + f->fitted_count; i++) {
         const zt_rung *rung = &f->ladder->rungs[i];
         if ((rung->sampling.max & (rung->sampling.max - 1)) != 0) continue;
@@ -39,7 +39,7 @@ static int find_knee(const zt_findings *f) {
 /* A single sample is in the middle of its pixel and no random one; and what is near the
  * reference's own error is not known well enough. */
 static void fit(zt_findings *f) {
-    double time[FITTED_MAX], samples[FITTED_MAX], error[FITTED_MAX];
+    double time[FITTED_MAX] = {0}, samples[FITTED_MAX] = {0}, error[FITTED_MAX] = {0};
     const zt_rung *rungs = f->ladder->rungs;
     f->first_fitted = f->even_count > 1 ? 1 : 0;
     for (int i = f->first_fitted; i < f->even_count && f->fitted_count < FITTED_MAX; i++) {

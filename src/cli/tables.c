@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 /* A column of numbers: its name in both forms, and where it is in a rung. */
 typedef struct column {
@@ -35,7 +36,9 @@ static const column columns[] = {
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 static double value_of(const zt_rung *rung, const column *c) {
-    return *(const double *)((const char *)rung + c->offset);
+    double value;
+    memcpy(&value, (const char *)rung + c->offset, sizeof value);
+    return value;
 }
 
 static const char *kind_name(const zt_rung *rung) {

@@ -200,7 +200,7 @@ zt_status zt_flip(double *mean, const uint8_t *image, const uint8_t *reference, 
              .height = height,
              .count = (size_t)width * (size_t)height,
              .pixels_per_degree = distance_m * display_pixels / display_m * pi / 180};
-    seen s[2];
+    seen s[2] = {0};
     ZT_TRY(push_planes(&e, s, arena));
     for (int i = 0; i < 256; i++) e.linear[i] = zt_srgb_to_linear(i / 255.0);
     look(&s[0], image, &e);

@@ -74,7 +74,7 @@ static int by_time(const void *a, const void *b) {
 
 /* Renders a frame, a short one several times; what it took is the median. */
 static zt_status measure(cost *median, climb *c, zt_image *image, int64_t frame) {
-    cost runs[RUNS_MAX];
+    cost runs[RUNS_MAX] = {0};
     int count = 0;
     for (double all_s = 0; count < RUNS_MAX && (all_s < long_enough_s || count % 2 == 0);
          count++) {
