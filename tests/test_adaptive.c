@@ -84,8 +84,8 @@ static void compare(const test_scene *s, zt_sampling sampling, const zt_image *r
 
 /* Of the pixels whose error or estimate is above 0.002, the estimate is too low by more than a
  * factor of 2.5 in at most 5 %, being those that stop when they are lucky; and of those whose
- * error is, too high by as much in at most 25
- * %: what is next to an edge counts as if it were a part of it. */
+ * error is, too high by as much in at most 10 %: what is next to an edge counts as part of it.
+ */
 static void estimates_are_errors(void **state) {
     (void)state;
     static test_scene s;
@@ -97,10 +97,8 @@ static void estimates_are_errors(void **state) {
         const zt_sampling samplings[] = {
             {.min = 4, .max = 256, .error = 0.02},
             {.min = 4, .max = 1024, .error = 0.006},
-            {.min = 16, .max = 16, .error = 0, .filter = ZT_FILTER_MITCHELL},
         };
-        for (int i = 0; i < 2; i++)
-            compare(&s, samplings[i], reference, 0.002, 2.5, 0.02, 0.15);
+        for (int i = 0; i < 2; i++) compare(&s, samplings[i], reference, 0.002, 2.5, 0.05, 0.1);
         zt_image_free(&reference);
     }
 }
