@@ -175,6 +175,27 @@ static void what_a_frame_shows(void **state) {
     }
 }
 
+/* A file with sound is named relative to the description; none is no file. */
+static void audio(void **state) {
+    (void)state;
+    const struct {
+        const char *words, *ending;
+    } cases[] = {{"", NULL},
+                 {", audio: sound/track.wav", "sound/track.wav"},
+                 {", audio: /sounds/track.wav", "/sounds/track.wav"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 "zoetrope: 1\nfilm: { duration: 1 s%s }\ncamera: { position: [0, 0, 5] }\n",
+                 cases[i].words);
+        zt_animation *animation = animation_of(text);
+        const char *path = zt_animation_film(animation)->audio;
+        if (!cases[i].ending) assert_null(path);
+        if (cases[i].ending) assert_string_equal(path, cases[i].ending);
+        zt_animation_free(&animation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shutter),
@@ -182,6 +203,7 @@ int main(void) {
         cmocka_unit_test(filters_and_seeds),
         cmocka_unit_test(overrides),
         cmocka_unit_test(what_a_frame_shows),
+        cmocka_unit_test(audio),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -32,6 +32,7 @@ typedef struct zt_film {
     zt_view view;
     zt_sampling sampling;
     zt_shutter shutter;
+    const char *audio; /* the path of its sound, or NULL; the animation's own */
 } zt_film;
 
 /* How much there is, for a summary. */

@@ -117,31 +117,39 @@ static zt_status write_manifest(const zt_renderer *renderer, const char *descrip
     return status;
 }
 
-/* Opens the output, which is told the film's title. */
+/* Opens the output, which is told the film's title and sound. */
 static zt_status open_output(zt_output **output, const char *target,
                              const zt_output_format *format, const zt_options *options,
-                             zt_report *report) {
-    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", NULL}};
+                             const char *audio, zt_report *report) {
+    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 3] = {{"title", NULL}, {"audio", audio}};
     int length;
     const char *name = zt_options_name(&length, options);
     char *title = strndup(name, (size_t)length);
     if (!title) return ZT_EMEMORY;
     wishes[0].value = title;
-    memcpy(wishes + 1, options->output_options, sizeof options->output_options);
+    memcpy(wishes + (audio ? 2 : 1), options->output_options, sizeof options->output_options);
     zt_status status =
         zt_output_open(output, target, format, wishes, zt_report_listener(report));
     free(title);
     return status;
 }
 
+/* The film's sound is that from its first frame on. */
+static const char *audio_from(const zt_film *film, int64_t first, zt_report *report) {
+    if (film->audio && first > 0)
+        zt_report_say(report, ZT_WARNING, "no sound: that of the film begins with frame 0");
+    return first > 0 ? NULL : film->audio;
+}
+
 /* Opens the output, renders the frames into it, and closes it whatever happened. */
 static zt_status write_frames(zt_renderer *renderer, const zt_options *options, int64_t first,
-                              int64_t last, const char *target, zt_report *report) {
+                              int64_t last, const char *target, const char *audio,
+                              zt_report *report) {
     zt_output_format format = zt_renderer_format(renderer);
     format.frame_count = last - first + 1;
     zt_output *output = NULL;
     listen_for_interrupts();
-    zt_status status = open_output(&output, target, &format, options, report);
+    zt_status status = open_output(&output, target, &format, options, audio, report);
     if (status != ZT_OK) return status;
     zt_progress progress = zt_progress_begin(report, last - first + 1);
     status = render_frames(renderer, &options->budget, first, last, output, &progress);
@@ -178,7 +186,8 @@ static zt_status render(const zt_options *options, const zt_manifest *manifest,
     if (status == ZT_OK && options->replays)
         status = replay(renderer, options, report);
     else if (status == ZT_OK)
-        status = write_frames(renderer, options, first, last, target, report);
+        status = write_frames(renderer, options, first, last, target,
+                              audio_from(film, first, report), report);
     zt_renderer_close(&renderer);
     free(target);
     return status;

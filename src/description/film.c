@@ -2,6 +2,7 @@
 #include "description/film.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "description/times.h"
 
@@ -174,10 +175,24 @@ static void read_sampling(zt_sampling *sampling, zt_mistakes *mistakes,
     if (seed) read_seed(sampling, mistakes, seed);
 }
 
-zt_status zt_film_read(zt_reading *reading, const zt_node *node) {
+/* Whether the file is one with sound is for the output to say. */
+static zt_status read_audio(zt_reading *reading, const zt_node *node, const char *directory) {
+    const char *name = zt_read_text(&reading->mistakes, node, "audio");
+    if (!name) return ZT_OK;
+    if (*name == '/') directory = "";
+    size_t directory_length = strlen(directory), length = directory_length + strlen(name);
+    char *path = ZT_PUSH(&reading->animation->arena, char, length + 1);
+    if (!path) return ZT_EMEMORY;
+    memcpy(path, directory, directory_length);
+    memcpy(path + directory_length, name, length - directory_length + 1);
+    reading->animation->film.audio = path;
+    return ZT_OK;
+}
+
+zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *directory) {
     static const char *const names[] = {"size",    "rate",        "duration", "view",
                                         "shading", "reflections", "samples",  "filter",
-                                        "quality", "seed",        "shutter"};
+                                        "quality", "seed",        "shutter",  "audio"};
     static const char *const views[] = {[ZT_VIEW_RAW] = "raw", [ZT_VIEW_SRGB] = "srgb"};
     static const char *const shadings[] = {"classic"};
     zt_mistakes *mistakes = &reading->mistakes;
@@ -189,7 +204,7 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node) {
                   *duration = zt_field_required(&fields, mistakes, "duration", &node->place),
                   *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
                   *reflections = zt_field(&fields, "reflections"),
-                  *shutter = zt_field(&fields, "shutter");
+                  *shutter = zt_field(&fields, "shutter"), *audio = zt_field(&fields, "audio");
     int choice;
     int64_t number;
     if (size) read_size(film, mistakes, size);
@@ -204,7 +219,7 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node) {
         reading->animation->rest.reflection_depth = (int32_t)number;
     if (shutter) read_shutter(&film->shutter, mistakes, shutter);
     read_sampling(&film->sampling, mistakes, &fields);
-    return ZT_OK;
+    return audio ? read_audio(reading, audio, directory) : ZT_OK;
 }
 
 void zt_film_rest(zt_animation *animation) {

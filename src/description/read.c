@@ -66,7 +66,7 @@ static zt_status read_root(zt_reading *reading, const zt_node *root, const char 
                         LANGUAGE_VERSION);
     const zt_node *film = zt_field_required(&fields, mistakes, "film", &root->place);
     const zt_node *camera = zt_field_required(&fields, mistakes, "camera", &root->place);
-    if (film) ZT_TRY(zt_film_read(reading, film));
+    if (film) ZT_TRY(zt_film_read(reading, film, directory));
     ZT_TRY(read_names(reading, &fields));
     if (camera) ZT_TRY(zt_camera_read(reading, camera));
     ZT_TRY(zt_objects_read(reading, directory, zt_field(&fields, "materials"),
