@@ -188,7 +188,8 @@ static void assert_order(const AVFrame *frame, const char *path, int f) {
     double here[4], before[4];
     pixel_of(here, frame, 4 * f + 2, HEIGHT - 3);
     pixel_of(before, frame, 4 * f + 10, HEIGHT - 3);
-    if (here[1] < 0.7 || before[1] * before[3] > 0.5) fail_msg("%s: frame %d is another one", path, f);
+    if (here[1] < 0.7 || before[1] * before[3] > 0.5)
+        fail_msg("%s: frame %d is another one", path, f);
 }
 
 static void assert_tags(const AVStream *stream, const way *w, bool is_rgb) {

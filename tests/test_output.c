@@ -162,9 +162,9 @@ static void unknown_endings(void **state) {
     assert_refused("u/film.mp5", "did you mean \".mp4\"?");
     assert_refused("u/a.####.pgn", "did you mean \".png\"?");
     assert_refused("u/a.hsah", "did you mean \".hash\"?");
-    assert_refused("u.png/film",
-                   "a movie .mp4 .mov .mkv .webm .gif .apng; images .png .exr .tif .tiff .jpg .jpeg .webp .hdr .dpx; "
-                   "checksums .hash");
+    assert_refused("u.png/film", "a movie .mp4 .mov .mkv .webm .gif .apng; images .png .exr "
+                                 ".tif .tiff .jpg .jpeg .webp .hdr .dpx; "
+                                 "checksums .hash");
     assert_refused("u/%s%n", "no output is named u/%s%n");
     assert_refused("", "no output is named");
     assert_refused("mp4", "no output is named mp4");

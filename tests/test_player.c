@@ -73,7 +73,7 @@ static void write_page(const char *page, const char *film, bool is_image) {
 static void show(char *text, size_t size, const char *page) {
     char command[1024];
     snprintf(command, sizeof command,
-             "timeout -k 5 60 %s --headless --no-sandbox --disable-gpu "
+             "exec 2>/dev/null; timeout -k 5 60 %s --headless --no-sandbox --disable-gpu "
              "--force-color-profile=srgb --user-data-dir=profile "
              "--allow-file-access-from-files --autoplay-policy=no-user-gesture-required "
              "--enable-logging=stderr file://$PWD/%s 2>log.txt & browser=$!; touch log.txt; "
