@@ -73,10 +73,11 @@ static void write_page(const char *page, const char *film, bool is_image) {
 static void show(char *text, size_t size, const char *page) {
     char command[1024];
     snprintf(command, sizeof command,
-             "exec 2>/dev/null; timeout -k 5 60 %s --headless --no-sandbox --disable-gpu "
+             "exec 2>/dev/null; : >log.txt; timeout -k 5 60 %s --headless --no-sandbox "
+             "--disable-gpu "
              "--force-color-profile=srgb --user-data-dir=profile "
              "--allow-file-access-from-files --autoplay-policy=no-user-gesture-required "
-             "--enable-logging=stderr file://$PWD/%s 2>log.txt & browser=$!; touch log.txt; "
+             "--enable-logging=stderr file://$PWD/%s 2>>log.txt & browser=$!; "
              "while kill -0 $browser 2>/dev/null && ! grep -q 'seen .* end' log.txt; do "
              "sleep 0.1; done; kill $browser; wait $browser; grep 'seen .* end' log.txt",
              browser(), page);
