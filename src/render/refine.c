@@ -12,7 +12,7 @@
 
 /* Samples of a pixel at least, and where edges cannot be told; so many that rays share a batch
  * with few others; rays that a thread takes at a time. */
-enum { PAIR = 2, BLIND = 4, TOGETHER = 16, TASK_RAYS = 1024 };
+enum { PAIR = 2, BLIND = 8, TOGETHER = 16, TASK_RAYS = 1024 };
 
 /* What all slots of a round have in common. */
 typedef struct round_job {

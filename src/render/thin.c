@@ -224,9 +224,16 @@ static void mark_row(uint8_t *row, int width, const point *hull, int count, doub
         if (row[x] < level) row[x] = level;
 }
 
-/* As many samples as have one in each of so many strips of half the width. */
-static uint8_t level_of(double width) {
-    double level = ceil(log2(2 / fmax(width, 0x1p-10)));
+/* The logarithm of how many equal intervals of a pixel there must be for one of them to lie
+ * within so much of it. */
+static double intervals(double width) { return fmax(ceil(log2(2 / fmax(width, 0x1p-10))), 0); }
+
+/* As many samples as have one in each such strip of the pixel; or, where the thing is no longer
+ * than a pixel either, in each such box within what is round. */
+static uint8_t level_of(double width, double across, double down) {
+    const double round = 0.70710678118654752;
+    double level = intervals(width);
+    if (across < 1 && down < 1) level = intervals(round * across) + intervals(round * down);
     return (uint8_t)fmin(fmax(level, LEAST_LOW), LEAST_HIGH);
 }
 
@@ -238,16 +245,19 @@ static void mark_piece(uint8_t *least, const zt_thin *thin, const vec3 *corners,
     for (int i = 0; i < CORNERS; i++) far = fmax(far, corners[i].z);
     width = fmin(width, thickness / (thin->is_flat ? thin->step : thin->step * far));
     if (!(width < thin_px)) return;
-    double top = INFINITY, bottom = -INFINITY;
+    double top = INFINITY, bottom = -INFINITY, left = INFINITY, right = -INFINITY;
     for (int i = 0; i < count; i++) {
         top = fmin(top, hull[i].y);
         bottom = fmax(bottom, hull[i].y);
+        left = fmin(left, hull[i].x);
+        right = fmax(right, hull[i].x);
     }
+    uint8_t level = level_of(width, right - left, bottom - top);
     int first = (int)fmax(floor(top - room), 0);
     int last = (int)fmin(bottom + room, thin->height - 1);
     for (int y = first; y <= last; y++)
         mark_row(least + (size_t)y * (size_t)thin->width, thin->width, hull, count, y - room,
-                 y + 1 + room, room, level_of(width));
+                 y + 1 + room, room, level);
 }
 
 /* Cuts a prism, whose corners are the camera's, until both ends are about as far away. */

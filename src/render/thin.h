@@ -19,7 +19,8 @@ zt_status zt_thin_prepare(const zt_thin **thin, const zt_exposure *exposure, int
 
 /* Raises, in a plane of the picture, the numbers of the pixels that bounds of thin things
  * cover, `reach` pixels around included: to the logarithm of as many samples as meet what is so
- * thin for sure where it goes straight up or across through a pixel, from 4 to 64. Planes are
+ * thin for sure where it goes straight up or across through a pixel, or is smaller than one and
+ * lies within it, from 4 to 64. Planes are
  * left out, and the parts of meshes, which count as a whole; nothing is found for an
  * equirectangular lens. */
 void zt_thin_mark(uint8_t *least, const zt_thin *thin, int reach);
