@@ -2,12 +2,18 @@
 #include "render/render.h"
 
 #include <string.h>
+#if defined __SSE__
+#include <xmmintrin.h>
+#endif
 
 #include "base/diag.h"
 #include "render/edges.h"
 #include "render/refine.h"
 #include "render/work.h"
 #include "tracer/isa.h"
+
+/* Pixels side by side that are written at once. */
+enum { RUN = 4 };
 
 /* The pixels of a tile: columns x .. x + width - 1, rows y .. y + height - 1. */
 typedef struct tile {
@@ -98,22 +104,31 @@ ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict
     }
 }
 
+/* Four pixels, a line of a cache, past the caches: a picture that does not fit there is written
+ * without being read before. */
+static inline void stream_run(float *to, const float *r, const float *g, const float *b) {
+#if defined __SSE__
+    __m128 x = _mm_load_ps(r), y = _mm_load_ps(g), z = _mm_load_ps(b), w = _mm_set1_ps(1);
+    _MM_TRANSPOSE4_PS(x, y, z, w);
+    _mm_stream_ps(to, x);
+    _mm_stream_ps(to + 4, y);
+    _mm_stream_ps(to + 8, z);
+    _mm_stream_ps(to + 12, w);
+#else
+    for (int k = 0; k < RUN; k++)
+        memcpy(to + 4 * k, (float[4]){r[k], g[k], b[k], 1}, 4 * sizeof(float));
+#endif
+}
+
 /* Writes means to the image, where a whole tile is listed four pixels of a row at a time. */
-ZT_CLONES static void fill_pixels(float *restrict pixels, int width,
-                                  const zt_radiance *restrict sum,
-                                  const int32_t *restrict column, const int32_t *restrict row,
-                                  int count, bool whole) {
-    enum { RUN = 4 };
-    for (int i = 0; whole && i < count; i += RUN) {
-        float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
-        for (int k = 0; k < RUN; k++) {
-            to[4 * k] = sum->r[i + k];
-            to[4 * k + 1] = sum->g[i + k];
-            to[4 * k + 2] = sum->b[i + k];
-            to[4 * k + 3] = 1;
-        }
-    }
-    for (int i = 0; !whole && i < count; i++) {
+static void fill_pixels(float *restrict pixels, int width, const zt_radiance *restrict sum,
+                        const int32_t *restrict column, const int32_t *restrict row, int count,
+                        bool whole) {
+    bool runs = whole && width % RUN == 0;
+    for (int i = 0; runs && i < count; i += RUN)
+        stream_run(pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]),
+                   sum->r + i, sum->g + i, sum->b + i);
+    for (int i = 0; !runs && i < count; i++) {
         float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
         memcpy(to, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1}, 4 * sizeof(float));
     }
@@ -180,6 +195,9 @@ static void render_run(void *user, int index, int worker) {
         if (!render_tile(f, tile, worker))
             atomic_store_explicit(&f->stopped, true, memory_order_relaxed);
     }
+#if defined __SSE__
+    _mm_sfence(); /* others see what went past the caches */
+#endif
 }
 
 /* How many tiles side by side a thread takes at a time: two that write next to each other slow

@@ -1,5 +1,6 @@
 #include "render/samples.h"
 
+#include "tracer/isa.h"
 #include "tracer/sampler.h"
 
 void zt_samples_key(zt_places *restrict places, const zt_render_job *job,
@@ -22,16 +23,23 @@ static void place(zt_places *p, const zt_render_job *job, int first, int count, 
     }
 }
 
+/* From within pixels to the picture. */
+ZT_CLONES static void add_corners(float *restrict x, float *restrict y,
+                                  const int32_t *restrict column, const int32_t *restrict row,
+                                  int count) {
+    for (int i = 0; i < count; i++) {
+        x[i] += (float)column[i];
+        y[i] += (float)row[i];
+    }
+}
+
 void zt_samples_take(zt_places *p, zt_rays *rays, const zt_render_job *job,
                      const int32_t *restrict column, const int32_t *restrict row, int first,
                      int count, int sample) {
-    float *restrict x = p->x + first, *restrict y = p->y + first, unused[ZT_BATCH];
+    float *x = p->x + first, *y = p->y + first, unused[ZT_BATCH];
     uint32_t number = sample < 0 ? 0 : (uint32_t)sample;
     place(p, job, first, count, sample);
-    for (int i = 0; i < count; i++) {
-        x[i] = (float)column[i] + x[i];
-        y[i] = (float)row[i] + y[i];
-    }
+    add_corners(x, y, column, row, count);
     if (zt_lens_has_aperture(job->lens))
         zt_sample_points(p->u + first, p->v + first, p->key, ZT_DIMENSION_LENS, number, count);
     if (job->scene->moves || zt_lens_moves(job->lens))

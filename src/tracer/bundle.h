@@ -15,7 +15,8 @@ typedef struct zt_bundle {
     zt_box origins, directions;
     bool has_target;
     zt_box target;
-    int32_t source; /* the one on whose surface all rays begin, or -1 */
+    int32_t source;       /* the one on whose surface all rays begin, or -1 */
+    int32_t passed_count; /* so many of what is asked one by one are not met, as was found */
 } zt_bundle;
 
 /* The bits of a float as an integer, numbered so that the order of the integers is that of the

@@ -104,13 +104,12 @@ static bool may_meet(const zt_bundle *b, const zt_primitive *p, int32_t index) {
                : zt_bundle_meets(b, &p->box, p->stretch);
 }
 
-bool ZT_KERNEL_NAME(zt_may_meet)(const zt_bundle *b, const zt_tracer *tracer) {
-    if (tracer->crowd) return true;
-    for (int32_t k = 0; k < tracer->single_count; k++) {
-        int32_t index = tracer->single[k];
+bool ZT_KERNEL_NAME(zt_may_meet)(zt_bundle *b, const zt_tracer *tracer) {
+    for (; b->passed_count < tracer->single_count; b->passed_count++) {
+        int32_t index = tracer->single[b->passed_count];
         if (may_meet(b, &tracer->primitives[index], index)) return true;
     }
-    return false;
+    return tracer->crowd != NULL;
 }
 
 void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
@@ -136,7 +135,7 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
 void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
                                 const zt_tracer *tracer) {
     int padded = zt_batch_padded(rays->count);
-    for (int32_t k = 0; k < tracer->single_count; k++) {
+    for (int32_t k = bundle->passed_count; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
         if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;

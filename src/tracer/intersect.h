@@ -17,8 +17,9 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
 void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
                                 const zt_tracer *tracer);
 
-/* False only where no ray of a bundle meets anything. */
-bool ZT_KERNEL_NAME(zt_may_meet)(const zt_bundle *bundle, const zt_tracer *tracer);
+/* False only where no ray of a bundle meets anything. Notes how far it had to look, so that
+ * zt_occlude need not look again. */
+bool ZT_KERNEL_NAME(zt_may_meet)(zt_bundle *bundle, const zt_tracer *tracer);
 
 /* For one primitive that is not a mesh, and the group of lanes that begins with ray number
  * `first`: their nearest hits; with `any`, of shadow rays. */
