@@ -118,11 +118,15 @@ static void wishes_come_true(void **state) {
     (void)state;
     zt_image *image = picture(61, 43, 0);
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        const zt_wish options[] = {
-            {files[i].bits ? "bits" : "preset", files[i].bits},
-            {files[i].compression ? "compression" : "preset", files[i].compression},
-            {files[i].tile ? "tile" : "preset", files[i].tile},
-            {NULL, NULL}};
+        char texts[3][64];
+        zt_wish options[4] = {{NULL, NULL}};
+        const char *const wished[3] = {files[i].bits, files[i].compression, files[i].tile};
+        static const char *const keys[3] = {"bits", "compression", "tile"};
+        for (int k = 0, count = 0; k < 3; k++) {
+            if (!wished[k]) continue;
+            snprintf(texts[k], sizeof texts[k], "%s=%s", keys[k], wished[k]);
+            options[count++] = (zt_wish){"format-option", texts[k]};
+        }
         write_wished(image, ZT_VIEW_SRGB, files[i].path, options);
         double off = largest_difference(image, files[i].path, files[i].expect);
         if (!(off <= files[i].within)) fail_msg("%s is off by %g", files[i].path, off);
@@ -147,12 +151,15 @@ static void wishes_refused(void **state) {
         {"x.jpg", "compression", "jpeg:101", "jpeg:1-100"},
         {"x.hdr", "compression", "zip", "there is: none"},
         {"x.gift", "bits", "8", "ending of x.gift"},
+        {"x.png", "depth", "8", "format-option depth=8: must be bits, compression or tile"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++) {
         heard h;
         zt_image_wishes got;
-        const zt_wish options[] = {{wishes[i].name, wishes[i].value}, {NULL, NULL}};
+        char text[64];
+        snprintf(text, sizeof text, "%s=%s", wishes[i].name, wishes[i].value);
+        const zt_wish options[] = {{"format-option", text}, {NULL, NULL}};
         assert_int_not_equal(zt_image_wish(&got, wishes[i].path, options, listener_of(&h)),
                              ZT_OK);
         assert_told(&h, wishes[i].told);

@@ -8,7 +8,7 @@
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
 #define MOVIE                                                                                  \
     (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
-     BIT(ENCODER_OPTION) | BIT(COMMENT) | BIT(AUDIO))
+     BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION))
 #define FINISHED                                                                               \
@@ -98,6 +98,8 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
          "of a movie, by FFmpeg's names; with an a, such as yuva444p10, it has alpha", true},
     [ZT_OPTION_ENCODER_OPTION] = {"encoder-option", 0, "K=V",
                                   "for the movie's encoder itself; any number of times", true},
+    [ZT_OPTION_FORMAT_OPTION] = {"format-option", 0, "K=V",
+                                 "of image files: bits=16, compression=dwaa:45, tile=64", true},
     [ZT_OPTION_COMMENT] = {"comment", 0, "TEXT", "in the movie's metadata", true},
     [ZT_OPTION_AUDIO] = {"audio", 0, "track.wav", "the movie's sound, instead of the film's",
                          true},

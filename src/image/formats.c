@@ -36,7 +36,7 @@ enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_MAX = 160, TILE_MAX
 
 const char *const zt_image_file_endings[] = {".png",  ".exr",  ".tif", ".tiff", ".jpg",
                                              ".jpeg", ".webp", ".hdr", ".dpx",  NULL};
-const char *const zt_image_file_options[] = {"bits", "compression", "tile", NULL};
+const char *const zt_image_file_options[] = {"format-option", NULL};
 
 static const char *const depth_names[ZT_DEPTH_COUNT] = {"8", "10", "12", "16", "half", "float"};
 
@@ -107,6 +107,35 @@ static zt_status wish_tile(zt_image_wishes *w, const char *value, zt_listener li
     return ZT_OK;
 }
 
+/* What a format-option says of a key; NULL where none does. Of two the later counts. */
+static const char *value_of(const zt_wish *options, const char *key) {
+    const char *value = NULL;
+    size_t length = strlen(key);
+    for (; options && options->name; options++)
+        if (zt_text_equal(options->name, "format-option") &&
+            strncmp(options->value, key, length) == 0 && options->value[length] == '=')
+            value = options->value + length + 1;
+    return value;
+}
+
+/* Refuses the first format-option that is not "key=value" of a key that there is. */
+static zt_status check_keys(const zt_wish *options, zt_listener listener) {
+    static const char *const keys[] = {"bits", "compression", "tile"};
+    for (; options && options->name; options++) {
+        if (!zt_text_equal(options->name, "format-option")) continue;
+        size_t length = strcspn(options->value, "=");
+        bool known = false;
+        for (int i = 0; i < 3 && options->value[length]; i++)
+            known |= strlen(keys[i]) == length && strncmp(keys[i], options->value, length) == 0;
+        if (known) continue;
+        zt_tell(listener, ZT_ERROR,
+                "format-option %s: must be bits, compression or tile, such as bits=16",
+                options->value);
+        return ZT_EARGUMENT;
+    }
+    return ZT_OK;
+}
+
 zt_status zt_image_wish(zt_image_wishes *w, const char *name, const zt_wish *options,
                         zt_listener listener) {
     *w = (zt_image_wishes){0};
@@ -117,7 +146,8 @@ zt_status zt_image_wish(zt_image_wishes *w, const char *name, const zt_wish *opt
         zt_tell(listener, ZT_ERROR, "no picture format has the ending of %s", name);
         return ZT_EUNSUPPORTED;
     }
-    ZT_TRY(wish_depth(w, zt_wish_value(options, "bits"), listener));
-    ZT_TRY(wish_compression(w, zt_wish_value(options, "compression"), listener));
-    return wish_tile(w, zt_wish_value(options, "tile"), listener);
+    ZT_TRY(check_keys(options, listener));
+    ZT_TRY(wish_depth(w, value_of(options, "bits"), listener));
+    ZT_TRY(wish_compression(w, value_of(options, "compression"), listener));
+    return wish_tile(w, value_of(options, "tile"), listener);
 }

@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-#include <zoetrope/wish.h>
 #include <zoetrope/status.h>
+#include <zoetrope/wish.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -48,11 +48,12 @@ typedef struct zt_image_wishes {
 /* The endings of all formats; NULL after the last. */
 extern const char *const zt_image_file_endings[];
 
-/* The names of what can be wished for: bits, compression, tile; NULL after the last. */
+/* The name of the wishes that are for image files; NULL after the last. */
 extern const char *const zt_image_file_options[];
 
-/* What is wished for of a file whose name ends as `name` does. `options` may be NULL, and may
- * hold others. ZT_EUNSUPPORTED, ZT_EARGUMENT after telling what there is instead. */
+/* What is wished for of a file whose name ends as `name` does, by wishes called "format-option"
+ * with values "bits=16", "compression=dwaa:45", "tile=64". `options` may be NULL, and may hold
+ * others. ZT_EUNSUPPORTED, ZT_EARGUMENT after telling what there is instead. */
 zt_status zt_image_wish(zt_image_wishes *wishes, const char *name, const zt_wish *options,
                         zt_listener listener);
 
