@@ -103,8 +103,7 @@ bool zt_warp_is_signed(const zt_warp *warp) { return warp && isfinite(warp->nega
 
 /* From a number of [0, 1) to the distance from the middle that it stands for. */
 static inline float distance_of(const zt_warp *warp, float u) {
-    float share = 1 - fabsf(2 * u - 1);
-    float cell = sqrtf(share > 0 ? share : 0) * CELLS;
+    float cell = sqrtf(1 - fabsf(2 * u - 1)) * CELLS;
     int32_t i = (int32_t)cell;
     float low = warp->places[i];
     return low + (cell - (float)i) * (warp->places[i + 1] - low);
@@ -119,9 +118,12 @@ ZT_CLONES void zt_warp_places(float *restrict x, float *restrict y, float *restr
         weight[i] = 1;
     }
     for (int i = 0; !warp->is_box && i < count; i++) {
+        /* Numbers of comparisons in place of branches, which would keep it narrow. */
         float dx = distance_of(warp, x[i]), dy = distance_of(warp, y[i]);
-        x[i] = 0.5f + (x[i] < 0.5f ? -dx : dx);
-        y[i] = 0.5f + (y[i] < 0.5f ? -dy : dy);
-        weight[i] = (dx > negative_from) == (dy > negative_from) ? 1 : -1;
+        int32_t left = x[i] < 0.5f, above = y[i] < 0.5f;
+        int32_t dark_x = dx > negative_from, dark_y = dy > negative_from;
+        x[i] = 0.5f + dx * (float)(1 - 2 * left);
+        y[i] = 0.5f + dy * (float)(1 - 2 * above);
+        weight[i] = (float)(1 - 2 * (dark_x ^ dark_y));
     }
 }

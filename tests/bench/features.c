@@ -14,7 +14,10 @@ typedef struct feature {
 
 /* A ball that crosses a third of the picture while the shutter is open. */
 #define MOVING                                                                                 \
-    { "ball.center", "{ curve: linear, keys: { 0: [1.7, 0.9, 0.3], 1: [-1, 1.4, 0.3] } }" }
+    {                                                                                          \
+        "ball.center",                                                                         \
+            "{ curve: linear, after: loop, keys: { 0: [1.7, 0.9, 0.3], 1: [-1, 1.4, 0.3] } }"  \
+    }
 
 static const feature features[] = {
     {"plain", {{NULL, NULL}}},
@@ -25,7 +28,8 @@ static const feature features[] = {
     {"shutter open, nothing moves", {{"film.shutter", "180 deg"}}},
     {"shutter open, the ball moves", {{"film.shutter", "360 deg"}, MOVING}},
     {"shutter open, the camera turns",
-     {{"film.shutter", "360 deg"}, {"camera.roll", "{ keys: { 0: 0, 1: 20 } }"}}},
+     {{"film.shutter", "360 deg"},
+      {"camera.roll", "{ curve: linear, after: loop, keys: { 0: 0, 1: 20 } }"}}},
     {"aperture", {{"camera.aperture", "0.05"}, {"camera.focus_distance", "7"}}},
     {"aperture of 6 blades",
      {{"camera.aperture", "0.05"}, {"camera.focus_distance", "7"}, {"camera.blades", "6"}}},
