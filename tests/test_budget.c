@@ -184,6 +184,14 @@ static void ends_of_the_range(void **state) {
     zt_plan_begin(&m.plan, 0.2);
     int samples = zt_plan_sampling(&m.plan, 7).max;
     assert_within(0.2 + true_cost(&m.plan, 7, samples), 2, 0.02);
+    for (int a = 0; a < 2; a++) { /* by an error; what the pilot took is the film's */
+        m = new_machine(2, a ? (zt_budget){.film_s = 2} : (zt_budget){.frame_s = 2}, by_error);
+        m.plan.last = m.plan.first;
+        m.plan.cost_count = 1;
+        zt_plan_begin(&m.plan, 0.6);
+        double work = pow(zt_plan_sampling(&m.plan, 7).error, -1.7);
+        assert_within(true_cost(&m.plan, 7, work), a ? 1.4 : 2, 0.02);
+    }
 }
 
 /* ---- manifests ------------------------------------------------------------------------------

@@ -56,12 +56,13 @@ typedef struct zt_budget {
 
 /* Allots samples to frames first .. last, both included, that are rendered next and in order. A
  * few of them, spread over the range, are rendered with few samples to find out how long they
- * take and how noisy they are, in about a tenth of the time at most. With a budget for the film
- * all frames end with about the same error; with one for each frame all take about as long. Of
- * adaptive sampling, it is the error that is chosen. How fast frames really are is taken into
- * account, little by little, for those to come. What is chosen, and where the time is too short
- * or more than can be used, is told. ZT_EARGUMENT where not one of the two is positive;
- * otherwise fails as rendering does. */
+ * take and how noisy they are, in about a tenth of the time at most; of adaptive sampling, in
+ * up to three tenths of a frame's. With a budget for the film all frames end with about the
+ * same error; with one for each frame all take about as long. Of adaptive sampling, it is the
+ * error that is chosen. How fast frames really are is taken into account, little by little, for
+ * those to come. What is chosen, and where the time is too short or more than can be used, is
+ * told. ZT_EARGUMENT where not one of the two is positive; otherwise fails as rendering does.
+ */
 zt_status zt_renderer_budget(zt_renderer *renderer, int64_t first, int64_t last,
                              const zt_budget *budget, const zt_watcher *watcher);
 

@@ -5,21 +5,24 @@
 #include "base/clock.h"
 #include "base/diag.h"
 
-/* What of the budget it may take; samples a pixel in it; how many of them even where no two
- * samples differ, so that frames that were not looked at have some. */
-#define PILOT_SHARE 0.1
+/* What of the budget it may take, and of adaptive sampling, of a single frame's; samples a
+ * pixel in it; how many of them even where no two samples differ, so that frames that were not
+ * looked at have some. */
+#define PILOT_SHARE    0.1
+#define ADAPTIVE_SHARE 0.3
 enum { SAMPLES_MAX = 64, SAMPLES_ANYWAY = 64, SMALLER = 4 };
 
 /* How errors fall with samples, and samples grow with errors, where that was not to be seen. */
 #define USUAL_SLOPE 0.6
-#define USUAL_POWER 1.5
+#define USUAL_POWER 1.65
+#define STEEPEST    2.0 /* errors of random samples fall no slower */
 
 typedef struct pilot {
     zt_plan *plan;
     zt_renderer *renderer;
     zt_watcher watcher;     /* stops, and says nothing */
     zt_image *images[2];    /* of the renderer's size */
-    zt_image *small, *tiny; /* of fewer pixels, and of fewer still */
+    zt_image *small;        /* of fewer pixels */
     double many;            /* times more pixels than the small one the others have */
     double left_s;          /* that it may still take */
     double fixed_s, unit_s; /* of a frame: before its first sample, and for each, a pixel */
@@ -170,8 +173,8 @@ static zt_status pilot_even(pilot *p) {
 /* ---- samples by an error --------------------------------------------------------------------
  *
  * How much more time smaller errors take does not follow from larger ones: ever more pixels
- * join in. So it is small pictures that go all the way down to the error that there is time
- * for.
+ * join in; nor from small pictures, of which edges are a larger part. So it is the whole
+ * picture that goes down, as far as there is time; a small one says where it can begin.
  */
 
 static zt_status measure_adaptive(taken *t, pilot *p, int64_t frame, zt_image *image,
@@ -182,123 +185,120 @@ static zt_status measure_adaptive(taken *t, pilot *p, int64_t frame, zt_image *i
     return take(t, p, frame, image, sampling);
 }
 
-enum { STEPS_MAX = 40 };
+#define SEEN 0.05 /* of the least, what its time may be off by */
 
-/* Ever smaller errors of one frame. Of a small picture: what the least samples take, and what
- * each error takes beyond that. Of the whole one: what the least samples take, and how many
- * times more it takes beyond that: where it is edges that ask for samples, there are not as
- * many times more as there are pixels. */
-typedef struct descent {
-    double error[STEPS_MAX], more_s[STEPS_MAX], least_s;
-    int count;
-    double tiny_least_s; /* of an even smaller picture, which shows how many times more it is */
-    double whole_least_s, times;
-} descent;
+/* What a picture takes with the least samples, and with an error beyond that. */
+typedef struct view {
+    zt_image *image;
+    double least_s, error, more_s;
+} view;
 
-static zt_status measure_small(double *least_s, pilot *p, int64_t frame, zt_image *image) {
+static zt_status see_least(view *v, pilot *p, int64_t frame) {
     taken t;
-    *least_s = INFINITY;
-    for (int i = 0; i < 2; i++) {
-        ZT_TRY(measure_adaptive(&t, p, frame, image, 1));
-        *least_s = fmin(*least_s, t.render_s);
+    v->least_s = INFINITY;
+    for (int i = 0; i < (v->image == p->small ? 2 : 1); i++) {
+        ZT_TRY(measure_adaptive(&t, p, frame, v->image, 1));
+        v->least_s = fmin(v->least_s, t.render_s);
     }
     return ZT_OK;
 }
 
-static zt_status measure_least(descent *d, pilot *p, int64_t frame) {
+static zt_status see_more(view *v, pilot *p, int64_t frame, double error) {
     taken t;
-    ZT_TRY(measure_small(&d->tiny_least_s, p, frame, p->tiny));
-    ZT_TRY(measure_small(&d->least_s, p, frame, p->small));
-    d->whole_least_s = p->many * d->least_s;
-    d->times = p->many;
-    if (p->left_s < 1.5 * (p->fixed_s + d->whole_least_s)) return ZT_OK;
-    ZT_TRY(measure_adaptive(&t, p, frame, p->images[0], 1));
-    d->whole_least_s = t.render_s;
-    d->times = fmin(fmax(t.render_s / d->least_s, SMALLER), p->many);
+    ZT_TRY(measure_adaptive(&t, p, frame, v->image, error));
+    v->error = error;
+    v->least_s = fmin(v->least_s, t.render_s);
+    v->more_s = fmax(t.render_s - v->least_s, SEEN * v->least_s);
     return ZT_OK;
 }
 
-/* As much more as the small picture took than the tiny one, the whole takes again, and again.
- */
-static zt_status see_times(descent *d, pilot *p, int64_t frame) {
-    taken t;
-    double more_s = d->more_s[d->count - 1];
-    ZT_TRY(measure_adaptive(&t, p, frame, p->tiny, d->error[d->count - 1]));
-    double tiny_more_s = t.render_s - d->tiny_least_s;
-    if (tiny_more_s < 0.5 * d->tiny_least_s) return ZT_OK;
-    double rise = fmin(fmax(more_s / tiny_more_s, 2), 4);
-    d->times = fmin(rise * SMALLER, p->many);
+/* The smallest error of a small picture that takes no more than so long beyond the least, or
+ * with which nothing asks for more samples. */
+static zt_status descend_small(view *small, pilot *p, int64_t frame, double most_s) {
+    const double none = 1e-5;
+    double step = 4;
+    ZT_TRY(see_more(small, p, frame, 0.1));
+    while (small->more_s < most_s) {
+        bool little = small->more_s < 0.2 * small->least_s;
+        view next = *small;
+        if (small->error < none) {
+            p->plan->enough = little ? 1 / small->error : 0;
+            return ZT_OK;
+        }
+        if (!little) step = 2;
+        ZT_TRY(see_more(&next, p, frame, small->error / step));
+        if (next.more_s <= most_s)
+            *small = next;
+        else if (step > 2)
+            step = 2;
+        else
+            return ZT_OK;
+    }
     return ZT_OK;
 }
 
-/* Goes down to the error that fills the time of a frame, or while there is time. */
-static zt_status descend(descent *d, pilot *p, int64_t frame, double frame_s) {
-    const double none = 1e-5; /* where nothing asks for more samples, at last */
-    double error = 0.05, keep_s;
-    taken t;
-    ZT_TRY(measure_least(d, p, frame));
-    for (keep_s = p->left_s / 4;;) {
-        ZT_TRY(measure_adaptive(&t, p, frame, p->small, error));
-        double more_s = fmax(t.render_s - d->least_s, 1e-3 * d->least_s);
-        d->error[d->count] = error;
-        d->more_s[d->count++] = more_s;
-        ZT_TRY(see_times(d, p, frame));
-        bool little = more_s < 0.2 * d->least_s;
-        bool full = t.fixed_s + d->whole_least_s + d->times * more_s > frame_s;
-        double next_s = 2 * t.fixed_s + d->least_s + 5 * more_s;
-        if (full || d->count == STEPS_MAX || p->left_s - next_s < keep_s) return ZT_OK;
-        if (error < none && little) p->plan->enough = 1 / error;
-        if (error < none) return ZT_OK;
-        error /= little ? 4 : 2;
+/* Goes down to the error that fills the time of a frame, or the pilot's but for `keep_s`; sets
+ * the plan's power, by which time grows at the last error. */
+static zt_status descend(view *whole, pilot *p, int64_t frame, double frame_s, double keep_s) {
+    double error = whole->error;
+    for (bool first = true;; first = false) {
+        view next = *whole;
+        ZT_TRY(see_more(&next, p, frame, error));
+        if (!first && whole->more_s > 2 * SEEN * whole->least_s) {
+            double power = log(next.more_s / whole->more_s) / log(whole->error / error);
+            p->plan->power = (USUAL_POWER + fmin(fmax(power, 1), STEEPEST)) / 2;
+        }
+        *whole = next;
+        double room_s = fmin(p->left_s - keep_s, frame_s) - p->fixed_s - whole->least_s;
+        if (p->plan->enough > 0 || room_s < 1.5 * whole->more_s) return ZT_OK;
+        error /= pow(fmin(room_s / whole->more_s, 32), 1 / STEEPEST);
     }
 }
 
-/* By which power of the error time grows at the last one. */
-static double power_of(const descent *d) {
-    int last = d->count - 1;
-    if (last == 0 || d->more_s[last - 1] < 0.1 * d->least_s) return USUAL_POWER;
-    double rise = log(d->more_s[last] / d->more_s[last - 1]);
-    return fmin(fmax(rise / log(d->error[last - 1] / d->error[last]), 1), 4);
-}
-
-/* Looks at the whole picture with the smallest error that there is time for. */
-static zt_status compare(descent *d, pilot *p, int64_t frame) {
-    taken t;
-    int i = d->count - 1;
-    while (i >= 0 && p->fixed_s + d->whole_least_s + d->times * d->more_s[i] > p->left_s / 2)
-        i--;
-    if (i < 0 || d->times * d->more_s[i] < 0.3 * d->whole_least_s) return ZT_OK;
-    ZT_TRY(measure_adaptive(&t, p, frame, p->images[0], d->error[i]));
-    d->times = fmin(fmax((t.render_s - d->whole_least_s) / d->more_s[i], 1), p->many);
+/* The other frames are as many times the middle one as their small pictures are. */
+static zt_status see_others(pilot *p, view *small, int64_t middle, double error) {
+    zt_plan *plan = p->plan;
+    zt_cost cost = plan->costs[0];
+    ZT_TRY(see_more(small, p, middle, error));
+    double each_s = 2 * p->fixed_s + 2 * small->least_s + small->more_s;
+    int count = (int)fmin(p->left_s / each_s, most_frames(plan));
+    for (int i = 0; i < count && count > 1; i++) {
+        view other = *small;
+        int64_t frame = spread_frame(plan, i, count);
+        ZT_TRY(see_least(&other, p, frame));
+        ZT_TRY(see_more(&other, p, frame, error));
+        plan->costs[i] = (zt_cost){frame, cost.fixed_s * other.least_s / small->least_s,
+                                   cost.unit_s * other.more_s / small->more_s, 1};
+        plan->cost_count = count;
+    }
     return ZT_OK;
 }
 
 static zt_status pilot_adaptive(pilot *p, double frame_s) {
     zt_plan *plan = p->plan;
-    descent d = {.count = 0};
-    taken t, least;
+    bool alone = plan->first == plan->last;
     int64_t middle = spread_frame(plan, 0, 1);
-    ZT_TRY(descend(&d, p, middle, frame_s));
-    ZT_TRY(compare(&d, p, middle));
-    plan->power = power_of(&d);
+    view small = {.image = p->small}, whole = {.image = p->images[0]};
+    /* Between edges alone and areas alone. */
+    double times = 0.7 * p->many, keep_s = alone ? 0 : p->left_s / 4;
+    ZT_TRY(see_least(&small, p, middle));
+    whole.least_s = p->many * small.least_s;
+    if (3 * (p->fixed_s + whole.least_s) < p->left_s) ZT_TRY(see_least(&whole, p, middle));
+    double room_s = fmin(p->left_s - keep_s, frame_s) - p->fixed_s - whole.least_s;
+    bool fits = room_s > 0.3 * whole.least_s;
+    /* Two pictures, or one alone where the least samples take most of the time. */
+    double part = room_s > 2 * whole.least_s ? 6 : 1;
+    double most_s = fits ? room_s / part : frame_s - p->fixed_s - whole.least_s;
+    ZT_TRY(descend_small(&small, p, middle, most_s / times));
+    plan->power = USUAL_POWER;
+    whole.error = small.error;
+    whole.more_s = times * small.more_s;
+    if (fits) ZT_TRY(descend(&whole, p, middle, frame_s, keep_s));
     if (plan->enough > 0) plan->enough = pow(plan->enough, plan->power);
-    double error = d.error[d.count - 1], scale = pow(error, plan->power);
     plan->cost_count = 1;
-    plan->costs[0] = (zt_cost){middle, p->fixed_s + d.whole_least_s,
-                               d.times * d.more_s[d.count - 1] * scale, 1};
-    double each_s = 2 * p->fixed_s + 2 * d.least_s + d.more_s[d.count - 1];
-    int count = (int)fmin(p->left_s / each_s, most_frames(plan));
-    for (int i = 0; i < count && count > 1; i++) {
-        int64_t frame = spread_frame(plan, i, count);
-        ZT_TRY(measure_adaptive(&least, p, frame, p->small, 1));
-        ZT_TRY(measure_adaptive(&t, p, frame, p->small, error));
-        double more_s = fmax(t.render_s - least.render_s, 1e-3 * least.render_s);
-        plan->costs[i] =
-            (zt_cost){frame, t.fixed_s + least.render_s * d.whole_least_s / d.least_s,
-                      d.times * more_s * scale, 1};
-        plan->cost_count = count;
-    }
-    return ZT_OK;
+    plan->costs[0] = (zt_cost){middle, p->fixed_s + whole.least_s,
+                               whole.more_s * pow(whole.error, plan->power), 1};
+    return alone ? ZT_OK : see_others(p, &small, middle, whole.error);
 }
 
 static zt_status make_images(pilot *p, const zt_output_format *format) {
@@ -306,7 +306,6 @@ static zt_status make_images(pilot *p, const zt_output_format *format) {
         height = (format->height + SMALLER - 1) / SMALLER;
     p->many = (double)format->width * format->height / ((double)width * height);
     ZT_TRY(zt_image_create(&p->small, width, height));
-    ZT_TRY(zt_image_create(&p->tiny, (width + 1) / 2, (height + 1) / 2));
     ZT_TRY(zt_image_create(&p->images[0], format->width, format->height));
     return zt_image_create(&p->images[1], format->width, format->height);
 }
@@ -316,14 +315,14 @@ zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher)
     double all_s =
         plan->budget.film_s > 0 ? plan->budget.film_s : plan->budget.frame_s * frame_count;
     pilot p = {.plan = plan, .renderer = r, .left_s = PILOT_SHARE * all_s};
+    bool adaptive = plan->sampling.min != plan->sampling.max;
+    if (adaptive) p.left_s = fmax(p.left_s, ADAPTIVE_SHARE * all_s / frame_count);
     if (watcher) p.watcher = (zt_watcher){NULL, watcher->stopped, watcher->user};
     zt_status status = make_images(&p, &r->format);
     if (status == ZT_OK) status = look(&p, spread_frame(plan, 0, 1));
-    bool adaptive = plan->sampling.min != plan->sampling.max;
     if (status == ZT_OK)
         status = adaptive ? pilot_adaptive(&p, all_s / frame_count) : pilot_even(&p);
     zt_image_free(&p.small);
-    zt_image_free(&p.tiny);
     zt_image_free(&p.images[0]);
     zt_image_free(&p.images[1]);
     return status;
