@@ -276,11 +276,11 @@ static zt_status see_others(pilot *p, view *small, int64_t middle, double error)
 
 static zt_status pilot_adaptive(pilot *p, double frame_s) {
     zt_plan *plan = p->plan;
-    bool alone = plan->first == plan->last;
+    bool few = most_frames(plan) < ZT_COSTS_MAX; /* have too little time to be compared */
     int64_t middle = spread_frame(plan, 0, 1);
     view small = {.image = p->small}, whole = {.image = p->images[0]};
     /* Between edges alone and areas alone. */
-    double times = 0.7 * p->many, keep_s = alone ? 0 : p->left_s / 4;
+    double times = 0.7 * p->many, keep_s = few ? 0 : p->left_s / 4;
     ZT_TRY(see_least(&small, p, middle));
     whole.least_s = p->many * small.least_s;
     if (3 * (p->fixed_s + whole.least_s) < p->left_s) ZT_TRY(see_least(&whole, p, middle));
@@ -298,7 +298,7 @@ static zt_status pilot_adaptive(pilot *p, double frame_s) {
     plan->cost_count = 1;
     plan->costs[0] = (zt_cost){middle, p->fixed_s + whole.least_s,
                                whole.more_s * pow(whole.error, plan->power), 1};
-    return alone ? ZT_OK : see_others(p, &small, middle, whole.error);
+    return few ? ZT_OK : see_others(p, &small, middle, whole.error);
 }
 
 static zt_status make_images(pilot *p, const zt_output_format *format) {
