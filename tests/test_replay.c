@@ -161,6 +161,23 @@ static void samples_make_the_pixel(void **state) {
     }
 }
 
+/* The mean is the pixel also where as many samples count negatively as positively. */
+static void weights_that_cancel_out(void **state) {
+    (void)state;
+    static told_pixel told;
+    film_open f = open_text(busy_film(", samples: 2, filter: mitchell", ""),
+                            &(zt_render_settings){.threads = 2});
+    int cancelled = 0;
+    for (int k = 0; k < 48; k++) {
+        replay(&told, &f, 0, k, 20);
+        cancelled += told.samples[0].sample.weight + told.samples[1].sample.weight == 0;
+        for (int c = 0; c < 3; c++)
+            assert_near(told.result.mean[c], (double)told.result.pixel[c], 1e-6);
+    }
+    assert_true(cancelled > 0);
+    close_film(&f);
+}
+
 /* A sample by itself is what it is among all of them: the same places, rays and light. */
 static void any_sample_alone(void **state) {
     (void)state;
@@ -414,9 +431,9 @@ static void program_prints(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DIRECTORY(samples_make_the_pixel), IN_DIRECTORY(any_sample_alone),
-        IN_DIRECTORY(what_is_said_is_so),     IN_DIRECTORY(triangles_have_numbers),
-        IN_DIRECTORY(program_prints),
+        IN_DIRECTORY(samples_make_the_pixel), IN_DIRECTORY(weights_that_cancel_out),
+        IN_DIRECTORY(any_sample_alone),       IN_DIRECTORY(what_is_said_is_so),
+        IN_DIRECTORY(triangles_have_numbers), IN_DIRECTORY(program_prints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,7 +58,7 @@ typedef struct zt_replay {
 
 typedef struct zt_replayed {
     int sample_count;
-    double mean[3]; /* of the samples' light, by their weights */
+    double mean[3]; /* of the samples' light, weighted as rendering does */
     float pixel[3]; /* what rendering made of them */
 } zt_replayed;
 

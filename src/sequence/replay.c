@@ -7,6 +7,7 @@
 #include "base/diag.h"
 #include "keyframe/advice.h"
 #include "keyframe/animation.h"
+#include "render/canvas.h"
 #include "render/samples.h"
 #include "sequence/pacing.h"
 
@@ -229,17 +230,19 @@ zt_status zt_renderer_replay_sample(zt_renderer *r, int64_t frame, int column, i
 /* All samples of the pixel, and the mean of those that are finite. */
 static zt_status take_all(double mean[3], replaying *p, int count) {
     bool middle = count == 1 && p->taking.job.sampling.edges;
-    double weights = 0;
-    mean[0] = mean[1] = mean[2] = 0;
+    zt_canvas_sum positive = {0}, negative = {0};
     for (int i = 0; i < count; i++) {
         ZT_TRY(take(p, middle ? ZT_SAMPLE_MIDDLE : i));
         const float light[3] = {p->light->r[0], p->light->g[0], p->light->b[0]};
         if (!isfinite(light[0]) || !isfinite(light[1]) || !isfinite(light[2])) continue;
-        double weight = p->taking.job.warp ? (double)p->places->weight[0] : 1;
-        for (int c = 0; c < 3; c++) mean[c] += weight * (double)light[c];
-        weights += weight;
+        bool below = p->taking.job.warp && p->places->weight[0] < 0;
+        zt_canvas_sum *sum = below ? &negative : &positive;
+        sum->r += (double)light[0];
+        sum->g += (double)light[1];
+        sum->b += (double)light[2];
+        sum->taken++;
     }
-    for (int c = 0; c < 3 && weights != 0; c++) mean[c] /= weights;
+    zt_canvas_mean(mean, &positive, &negative);
     return ZT_OK;
 }
 
