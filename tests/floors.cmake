@@ -55,7 +55,7 @@ set(doors
 # Headers of C, POSIX and the compiler that any file may include, and those of C++, which have no ending.
 set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
 signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
-unistd|sys/[a-z]+)(\\.h)?$")
+unistd|xmmintrin|sys/[a-z]+)(\\.h)?$")
 
 set(mistakes "")
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/*)

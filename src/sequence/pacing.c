@@ -1,22 +1,11 @@
 #include "sequence/pacing.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/clock.h"
 #include "base/diag.h"
-#include "sequence/budget.h"
 #include "sequence/manifest.h"
-#include "sequence/pilot.h"
-
-struct zt_pacing {
-    zt_plan plan;
-    double begun_s; /* by the clock */
-    int64_t next;   /* the frame that has its turn */
-    zt_manifest *manifest;
-};
 
 void zt_pacing_free(zt_pacing **slot) {
     if (*slot) zt_manifest_free(&(*slot)->manifest);
@@ -61,99 +50,4 @@ zt_status zt_pacing_done(zt_renderer *r, int64_t frame, const zt_sampling *sampl
         p->next++;
     }
     return ZT_OK;
-}
-
-/* ---- a budget -------------------------------------------------------------------------------
- */
-
-typedef struct words {
-    char text[64];
-} words;
-
-static words in_words(double seconds) {
-    words w;
-    if (seconds < 1)
-        snprintf(w.text, sizeof w.text, "%.3g ms", 1000 * seconds);
-    else if (seconds < 120)
-        snprintf(w.text, sizeof w.text, "%.3g s", seconds);
-    else if (seconds < 7200)
-        snprintf(w.text, sizeof w.text, "%.3g min", seconds / 60);
-    else
-        snprintf(w.text, sizeof w.text, "%.3g h", seconds / 3600);
-    return w;
-}
-
-/* What the frames are allotted: from the least to the most. */
-static void say_allotted(const zt_plan *p, zt_listener listener) {
-    zt_sampling first = zt_plan_sampling(p, p->first);
-    double low_error = first.error, high_error = first.error, all_s = 0;
-    int low = first.max, high = first.max;
-    bool adaptive = first.min != first.max;
-    for (int64_t frame = p->first; frame <= p->last; frame++) {
-        zt_sampling s = zt_plan_sampling(p, frame);
-        low = s.max < low ? s.max : low;
-        high = s.max > high ? s.max : high;
-        low_error = fmin(low_error, s.error);
-        high_error = fmax(high_error, s.error);
-        all_s += zt_plan_seconds(p, frame);
-    }
-    words time = in_words(all_s);
-    if (adaptive && low_error < high_error)
-        zt_tell(listener, ZT_NOTE, "errors from %g to %g are allotted, for about %s", low_error,
-                high_error, time.text);
-    else if (adaptive)
-        zt_tell(listener, ZT_NOTE, "an error of %g is allotted, for about %s", low_error,
-                time.text);
-    else if (low < high)
-        zt_tell(listener, ZT_NOTE, "%d to %d samples a pixel are allotted, for about %s", low,
-                high, time.text);
-    else
-        zt_tell(listener, ZT_NOTE, "%d samples a pixel are allotted, for about %s", low,
-                time.text);
-}
-
-/* What cannot be met, or need not be. */
-static void say_doubts(const zt_plan *p, double passed_s, zt_listener listener) {
-    double frame_count = (double)(p->last - p->first + 1);
-    bool film = p->budget.film_s > 0;
-    double wanted_s = film ? p->budget.film_s : p->budget.frame_s;
-    double least_s = film ? passed_s + zt_plan_least_s(p) : zt_plan_least_s(p) / frame_count;
-    const char *of = film ? "the film" : "a frame";
-    if (least_s > 1.1 * wanted_s)
-        zt_tell(listener, ZT_WARNING,
-                "%s takes about %s with the least samples, more than the %s that it may", of,
-                in_words(least_s).text, in_words(wanted_s).text);
-    else if (p->enough > 0)
-        zt_tell(listener, ZT_NOTE,
-                "no samples of a pixel differ in the frames that were looked at: %s is exact "
-                "in less than the %s that it may take",
-                of, in_words(wanted_s).text);
-}
-
-static zt_status allot(zt_pacing *p, zt_renderer *r, const zt_watcher *watcher) {
-    ZT_TRY(zt_pilot_run(&p->plan, r, watcher));
-    double passed_s = zt_clock_s() - p->begun_s;
-    zt_plan_begin(&p->plan, passed_s);
-    say_allotted(&p->plan, r->listener);
-    say_doubts(&p->plan, passed_s, r->listener);
-    return ZT_OK;
-}
-
-zt_status zt_renderer_budget(zt_renderer *r, int64_t first, int64_t last,
-                             const zt_budget *budget, const zt_watcher *watcher) {
-    if (last < first || (budget->frame_s > 0) == (budget->film_s > 0)) return ZT_EARGUMENT;
-    zt_pacing_free(&r->pacing);
-    zt_pacing *p = calloc(1, sizeof *p);
-    if (!p) return ZT_EMEMORY;
-    *p = (zt_pacing){
-        .plan = {.first = first, .last = last, .budget = *budget, .sampling = r->sampling},
-        .begun_s = zt_clock_s(),
-        .next = first,
-        .manifest = zt_manifest_create(r->format.width, r->format.height, r->precision)};
-    zt_status status = p->manifest ? allot(p, r, watcher) : ZT_EMEMORY;
-    if (status == ZT_OK)
-        r->pacing = p;
-    else
-        zt_pacing_free(&p);
-    return status;
 }

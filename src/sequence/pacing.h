@@ -3,7 +3,16 @@
 #ifndef ZT_SEQUENCE_PACING_H
 #define ZT_SEQUENCE_PACING_H
 
+#include "sequence/budget.h"
 #include "sequence/renderer.h"
+
+/* A budget that is being spent. */
+struct zt_pacing {
+    zt_plan plan;
+    double begun_s; /* by the clock */
+    int64_t next;   /* the frame that has its turn */
+    zt_manifest *manifest;
+};
 
 /* ZT_EARGUMENT, told, where the manifest that is followed has no such frame. */
 zt_status zt_pacing_sampling(zt_sampling *sampling, const zt_renderer *renderer, int64_t frame);
