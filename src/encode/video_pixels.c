@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <libavutil/imgutils.h>
 #include <libavutil/intreadwrite.h>
@@ -35,6 +36,10 @@ static zt_status make_frame(AVFrame **frame, int width, int height, enum AVPixel
     (*frame)->height = height;
     (*frame)->format = pixels;
     AV_TRY(ear, av_frame_get_buffer(*frame, 0));
+    /* Readers may look past the ends of lines: what is there must not depend on what memory
+     * held. */
+    for (int i = 0; i < AV_NUM_DATA_POINTERS && (*frame)->buf[i]; i++)
+        memset((*frame)->buf[i]->data, 0, (*frame)->buf[i]->size);
     return ZT_OK;
 }
 
