@@ -103,6 +103,31 @@ static void estimates_are_errors(void **state) {
     }
 }
 
+/* A bound on the mean holds however small the error asked for; each pixel has its first samples
+ * all the same, where edges are looked for as well, and the bits do not depend on threads. */
+static void means_are_bounded(void **state) {
+    (void)state;
+    static test_scene s;
+    int64_t left_out;
+    things(&s);
+    for (int edges = 0; edges < 2; edges++) {
+        zt_sampling sampling = {
+            .min = 4, .max = 65536, .error = 1e-5, .mean_max = 20, .edges = edges};
+        double mean = 0;
+        zt_image *image = render_sampled(&left_out, &s.scene, WIDTH, HEIGHT, sampling, 2);
+        zt_image *other = render_sampled(&left_out, &s.scene, WIDTH, HEIGHT, sampling, 1);
+        const float *samples = zt_image_channel(image, "samples");
+        for (int i = 0; i < PIXELS; i++) {
+            mean += (double)samples[i] / PIXELS;
+            assert_true(samples[i] >= (edges ? 1 : 4));
+        }
+        assert_true(mean > 6 && mean <= 20);
+        assert_memory_equal(image->pixels, other->pixels, 4 * PIXELS * sizeof *image->pixels);
+        zt_image_free(&image);
+        zt_image_free(&other);
+    }
+}
+
 /* A target is met: by nearly all pixels, each within 2.5 times of it, and by the picture. */
 static void targets_are_met(void **state) {
     (void)state;
@@ -168,6 +193,7 @@ static void tiles_have_no_borders(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(estimates_are_errors),
+        cmocka_unit_test(means_are_bounded),
         cmocka_unit_test(targets_are_met),
         cmocka_unit_test(tiles_have_no_borders),
     };

@@ -163,6 +163,21 @@ static void frames_are_done_in_time(void **state) {
     }
 }
 
+/* A frame that is noisier than all that were looked at ends: once it has had, on average, the
+ * samples that take half as long again as it is allotted. */
+static void noisy_frames_end(void **state) {
+    (void)state;
+    zt_sampling sampling = {.min = 4, .max = 64, .error = 0.01};
+    machine m = new_machine(24, (zt_budget){.frame_s = 2}, sampling);
+    zt_plan_begin(&m.plan, 0);
+    assert_int_equal(zt_plan_sampling(&m.plan, 9).mean_max, 0); /* nothing is known */
+    m.plan.sample_s = 0.05;
+    for (int64_t frame = m.plan.first; frame <= m.plan.last; frame++) {
+        int bound = zt_plan_sampling(&m.plan, frame).mean_max;
+        assert_in_range(bound, 57, 61);
+    }
+}
+
 /* Less than one sample is none: the least is taken, and said to take longer. More than
  * is of use is not taken. One frame is a film, too. */
 static void ends_of_the_range(void **state) {
@@ -206,14 +221,15 @@ static void manifests_come_back(void **state) {
     zt_manifest_frame frames[COUNT];
     for (int i = 0; i < COUNT; i++) {
         int samples = (int)test_between(&random, 1, 65537);
-        frames[i] = (zt_manifest_frame){3 * i + 10, samples, samples, 0};
+        frames[i] = (zt_manifest_frame){3 * i + 10, samples, samples, 0, 0};
         if (i % 3 == 0)
-            frames[i] = (zt_manifest_frame){3 * i + 10, 1, samples + 1, test_random(&random)};
+            frames[i] = (zt_manifest_frame){3 * i + 10, 1, samples + 1, test_random(&random),
+                                            i % 2 ? samples : 0};
         if (samples == 65536) frames[i].min = frames[i].max = 65536;
     }
     for (int i = 0; i < COUNT; i++) { /* in no order; once more with what counts */
         int at = i * 7 % COUNT;
-        zt_manifest_frame other = {frames[at].frame, 1, 1, 0};
+        zt_manifest_frame other = {frames[at].frame, 1, 1, 0, 0};
         assert_int_equal(zt_manifest_add(m, &other), ZT_OK);
         assert_int_equal(zt_manifest_add(m, &frames[at]), ZT_OK);
     }
@@ -226,7 +242,7 @@ static void manifests_come_back(void **state) {
         const zt_manifest_frame *f = zt_manifest_find(again, frames[i].frame);
         assert_non_null(f);
         assert_true(f->min == frames[i].min && f->max == frames[i].max);
-        assert_true(f->error == frames[i].error);
+        assert_true(f->error == frames[i].error && f->mean_max == frames[i].mean_max);
         assert_null(zt_manifest_find(again, frames[i].frame + 1));
     }
     int64_t first, last;
@@ -243,10 +259,11 @@ static void manifests_come_back(void **state) {
     zt_manifest_free(&again);
 }
 
-static const char good[] = "{\"zoetrope\": 1, \"description\": \"f\",\n"
-                           "\"size\": [4, 2], \"precision\": \"auto\", \"frames\": [\n"
-                           "{\"frame\": 1, \"samples\": 2},\n"
-                           "{\"frame\": 2, \"min\": 1, \"max\": 9, \"error\": 1e-3}]}\n";
+static const char good[] =
+    "{\"zoetrope\": 1, \"description\": \"f\",\n"
+    "\"size\": [4, 2], \"precision\": \"auto\", \"frames\": [\n"
+    "{\"frame\": 1, \"samples\": 2},\n"
+    "{\"frame\": 2, \"min\": 1, \"max\": 9, \"error\": 1e-3, \"mean_max\": 5}]}\n";
 
 typedef struct place_heard {
     int count, line, column;
@@ -473,6 +490,7 @@ int main(void) {
         cmocka_unit_test(frames_end_with_the_same_error),
         cmocka_unit_test(counts_are_smooth),
         cmocka_unit_test(frames_are_done_in_time),
+        cmocka_unit_test(noisy_frames_end),
         cmocka_unit_test(ends_of_the_range),
         IN_DIRECTORY(manifests_come_back),
         IN_DIRECTORY(hostile_manifests_are_refused),

@@ -23,13 +23,13 @@ typedef struct zt_manifest zt_manifest;
  *     "precision": "auto",
  *     "frames": [
  *       {"frame": 0, "samples": 48},
- *       {"frame": 1, "min": 4, "max": 256, "error": 0.00213}
+ *       {"frame": 1, "min": 4, "max": 256, "error": 0.00213, "mean_max": 30}
  *     ]
  *   }
  *
  * Samples are those of each pixel; with `min`, `max` and `error` they are taken as a
- * description's are. ZT_EFILE, told at its place, for a file that cannot be read or is no such
- * thing. The caller frees the manifest. */
+ * description's are, and no more than `mean_max` on average. ZT_EFILE, told at its place, for a
+ * file that cannot be read or is no such thing. The caller frees the manifest. */
 zt_status zt_manifest_read(zt_manifest **manifest, const char *path, zt_listener listener);
 
 /* Writes it at once: nobody sees half a file. `description` is the name of what was rendered.

@@ -309,11 +309,25 @@ static void write_channels(const zt_canvas *canvas, zt_image *image) {
 
 static int task_count(int32_t count, int32_t each) { return (count + each - 1) / each; }
 
+static double pixels_of(const zt_canvas *canvas) {
+    return (double)canvas->width * canvas->height;
+}
+
+/* How many samples the picture may take, in all, beyond each pixel's first ones. */
+static double most_samples(const zt_frame *f) {
+    int mean_max = f->job->sampling.mean_max;
+    return mean_max > 0 ? mean_max * pixels_of(&f->work->canvas) : INFINITY;
+}
+
 zt_status zt_refine(zt_frame *f) {
     zt_canvas *canvas = &f->work->canvas;
     round_job j = {.frame = f, .is_signed = zt_warp_is_signed(f->job->warp)};
+    double taken = f->at_edges ? pixels_of(canvas) : 0;
     while (canvas->waiting_count > 0) {
         j = plan_round(f, begin_round(canvas));
+        double more = (double)canvas->round_count * j.more;
+        if (j.asked > 0 && taken + more > most_samples(f)) continue; /* they stay as they are */
+        taken += more;
         run(f->pool, task_count(canvas->round_count, j.task_slots), sample_task, &j);
         if (f->stopped) return ZT_ESTOPPED;
         run(f->pool, task_count(canvas->round_count, DECISIONS), decide_task, &j);

@@ -14,6 +14,10 @@
 enum { TRUST = 2 };
 #define LEAST_ERROR 1e-6
 
+/* How much more than it is allotted a frame may take that is noisier than those that were
+ * looked at, as far as samples cost what they do where all pixels take as many. */
+#define MOST_TIMES 1.5
+
 static bool is_adaptive(const zt_plan *p) { return p->sampling.min != p->sampling.max; }
 
 static double between(double a, double b, double u) { return a + (b - a) * u; }
@@ -84,12 +88,20 @@ void zt_plan_begin(zt_plan *p, double passed_s) {
     p->took_s = p->meant_s = TRUST * meant_s;
 }
 
+/* Where no further samples are taken, whatever the error. */
+static int mean_max_for(const zt_plan *p, int64_t frame) {
+    if (!(p->sample_s > 0)) return 0;
+    double mean = ceil(MOST_TIMES * zt_plan_seconds(p, frame) / p->sample_s);
+    return (int)fmin(fmax(mean, 1), ZT_PLAN_SAMPLES_MAX);
+}
+
 zt_sampling zt_plan_sampling(const zt_plan *p, int64_t frame) {
     zt_cost c = cost_of(p, frame);
     zt_sampling sampling = p->sampling;
     if (is_adaptive(p)) {
         sampling.error = error_for(work_of(p, &c), p->power);
         sampling.max = ZT_PLAN_SAMPLES_MAX;
+        sampling.mean_max = mean_max_for(p, frame);
     } else {
         sampling.min = sampling.max = samples_for(work_of(p, &c));
     }

@@ -25,7 +25,8 @@ typedef struct zt_plan {
     double power;                /* of adaptive sampling */
     zt_cost costs[ZT_COSTS_MAX]; /* by rising frame; cost_count, at least 1 */
     int cost_count;
-    double enough; /* work beyond which no frame gets better; 0 where that is not known */
+    double sample_s; /* what a sample in each pixel takes; 0 where that is not known */
+    double enough;   /* work beyond which no frame gets better; 0 where that is not known */
     /* Set by zt_plan_begin. */
     double level; /* a film's: work for a share of 1; a frame's: the budget's part
                      that is what the costs count as a second */

@@ -124,6 +124,7 @@ static void print_frame(FILE *file, const zt_manifest_frame *f) {
     }
     fprintf(file, "\"min\": %" PRId32 ", \"max\": %" PRId32 ", \"error\": ", f->min, f->max);
     print_number(file, f->error);
+    if (f->mean_max > 0) fprintf(file, ", \"mean_max\": %" PRId32, f->mean_max);
     putc('}', file);
 }
 
@@ -188,10 +189,18 @@ static zt_status read_size(zt_manifest *m, zt_json *json) {
 }
 
 /* What has been read of a frame, a bit for each key. */
-enum { HAS_FRAME = 1, HAS_SAMPLES = 2, HAS_MIN = 4, HAS_MAX = 8, HAS_ERROR = 16 };
+enum {
+    HAS_FRAME = 1,
+    HAS_SAMPLES = 2,
+    HAS_MIN = 4,
+    HAS_MAX = 8,
+    HAS_ERROR = 16,
+    HAS_MEAN = 32
+};
 
 static zt_status read_frame_field(zt_manifest_frame *f, unsigned *has, zt_json *json) {
-    static const char *const keys[] = {"frame", "samples", "min", "max", "error", NULL};
+    static const char *const keys[] = {"frame", "samples",  "min", "max",
+                                       "error", "mean_max", NULL};
     int64_t number = 0;
     int key;
     ZT_TRY(zt_json_key(json, &key, keys));
@@ -200,6 +209,10 @@ static zt_status read_frame_field(zt_manifest_frame *f, unsigned *has, zt_json *
     if (1 << key == HAS_ERROR) return zt_json_number(json, &f->error, 0, 1);
     if (1 << key == HAS_FRAME) return zt_json_integer(json, &f->frame, 0, frame_max);
     ZT_TRY(zt_json_integer(json, &number, 1, SAMPLES_MAX));
+    if (1 << key == HAS_MEAN) {
+        f->mean_max = (int32_t)number;
+        return ZT_OK;
+    }
     if (1 << key != HAS_MAX) f->min = (int32_t)number;
     if (1 << key != HAS_MIN) f->max = (int32_t)number;
     return ZT_OK;
@@ -214,7 +227,8 @@ static zt_status read_frame(zt_manifest *m, zt_json *json) {
         ZT_TRY(read_frame_field(&f, &has, json));
         ZT_TRY(zt_json_more(json, &more, '}'));
     } while (more);
-    if (has != (HAS_FRAME | HAS_SAMPLES) && has != (HAS_FRAME | HAS_MIN | HAS_MAX | HAS_ERROR))
+    if (has != (HAS_FRAME | HAS_SAMPLES) &&
+        (has & ~(unsigned)HAS_MEAN) != (HAS_FRAME | HAS_MIN | HAS_MAX | HAS_ERROR))
         return zt_json_refuse(json, "a frame has \"frame\" and either \"samples\" or \"min\", "
                                     "\"max\" and \"error\"");
     if (f.min > f.max) return zt_json_refuse(json, "\"max\" is below \"min\"");

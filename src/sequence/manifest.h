@@ -9,6 +9,7 @@ typedef struct zt_manifest_frame {
     int64_t frame;
     int32_t min, max;
     double error; /* 0 where min = max */
+    int32_t mean_max;
 } zt_manifest_frame;
 
 /* Owned by the caller; NULL when out of memory. */

@@ -28,6 +28,7 @@ static zt_status follow(zt_sampling *sampling, const zt_renderer *r, int64_t fra
     sampling->min = found->min;
     sampling->max = found->max;
     sampling->error = found->error;
+    sampling->mean_max = found->mean_max;
     if (found->min == found->max) sampling->edges = false;
     return ZT_OK;
 }
@@ -43,7 +44,8 @@ zt_status zt_pacing_done(zt_renderer *r, int64_t frame, const zt_sampling *sampl
                          double took_s) {
     zt_pacing *p = r->pacing;
     if (!p || r->followed) return ZT_OK;
-    zt_manifest_frame done = {frame, sampling->min, sampling->max, sampling->error};
+    zt_manifest_frame done = {frame, sampling->min, sampling->max, sampling->error,
+                              sampling->mean_max};
     ZT_TRY(zt_manifest_add(p->manifest, &done));
     if (frame == p->next && frame <= p->plan.last) {
         zt_plan_done(&p->plan, frame, took_s, zt_clock_s() - p->begun_s);

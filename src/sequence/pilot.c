@@ -281,6 +281,7 @@ static zt_status pilot_adaptive(pilot *p, double frame_s) {
     view small = {.image = p->small}, whole = {.image = p->images[0]};
     /* Between edges alone and areas alone. */
     double times = 0.7 * p->many, keep_s = few ? 0 : p->left_s / 4;
+    plan->sample_s = p->unit_s;
     ZT_TRY(see_least(&small, p, middle));
     whole.least_s = p->many * small.least_s;
     if (3 * (p->fixed_s + whole.least_s) < p->left_s) ZT_TRY(see_least(&whole, p, middle));
