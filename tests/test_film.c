@@ -18,7 +18,8 @@ enum { WIDTH = 50, HEIGHT = 37 };
 static void channels_are_named(void **state) {
     (void)state;
     static const char *const names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i",
-                                        "j", "k", "l", "m", "n", "o", "p", "q"};
+                                        "j", "k", "l", "m", "n", "o", "p", "q", "r",
+                                        "s", "t", "u", "v", "w", "x", "y"};
     zt_image *image;
     assert_int_equal(zt_image_create(&image, 3, 2), ZT_OK);
     assert_null(zt_image_channel(image, "a"));

@@ -30,9 +30,12 @@ typedef struct zt_film {
     zt_rate rate;
     int64_t frame_count; /* at least 1 */
     zt_view view;
+    zt_ocio ocio; /* of ZT_VIEW_OCIO; its texts are the animation's own */
     zt_sampling sampling;
     zt_shutter shutter;
     const char *audio; /* the path of its sound, or NULL; the animation's own */
+    bool transparent;  /* where nothing is met; else it is black there */
+    unsigned aovs;     /* bits of zt_aov (zoetrope/aov.h) that images have besides R G B A */
 } zt_film;
 
 /* How much there is, for a summary. */

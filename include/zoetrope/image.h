@@ -2,6 +2,11 @@
 #ifndef ZOETROPE_IMAGE_H
 #define ZOETROPE_IMAGE_H
 
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <zoetrope/hash.h>
+#include <zoetrope/rate.h>
 #include <zoetrope/status.h>
 
 #ifdef __cplusplus
@@ -10,12 +15,38 @@ extern "C" {
 
 /* How linear light becomes the numbers of a display. */
 typedef enum zt_view {
-    ZT_VIEW_RAW, /* the numbers as they are, cut to 0..1 */
-    ZT_VIEW_SRGB /* the sRGB transfer function, IEC 61966-2-1 */
+    ZT_VIEW_RAW,  /* the numbers as they are, cut to 0..1 */
+    ZT_VIEW_SRGB, /* the sRGB transfer function, IEC 61966-2-1 */
+    ZT_VIEW_COUNT,
+    ZT_VIEW_OCIO = ZT_VIEW_COUNT /* a zt_ocio says which */
 } zt_view;
 
+/* A view of an OpenColorIO configuration. NULL means: the configuration that $OCIO names, its
+ * default display, that display's default view. */
+typedef struct zt_ocio {
+    const char *config, *display, *view;
+} zt_ocio;
+
 /* The largest width and height an image may have, and how many further channels. */
-enum { ZT_IMAGE_SIDE_MAX = 65536, ZT_IMAGE_CHANNELS_MAX = 16 };
+enum { ZT_IMAGE_SIDE_MAX = 65536, ZT_IMAGE_CHANNELS_MAX = 24 };
+
+/* What an image is of, for those who work on with it; files hold as much of it as their format
+ * can. Texts are not the image's own, and NULL where they are not known. */
+typedef struct zt_image_info {
+    bool known; /* else the rest says nothing */
+    int64_t frame;
+    zt_rate rate;
+    zt_hash key;     /* of all that decides the pixels */
+    double render_s; /* seconds of wall time */
+    uint64_t seed;
+    /* By rows, for points as rows on the left of them, as OpenEXR has it: to the camera's space
+     * (it looks along -z, y is up), and from there to what x and y / w are -1..1 in over the
+     * picture, left to right, bottom to top. All zeros where there is no such matrix. */
+    double world_to_camera[16], world_to_ndc[16];
+    const char *title, *description; /* the film's name, and its file's */
+    const char *settings;            /* all else that decides the pixels, as a text to be read
+                                        again by a program */
+} zt_image_info;
 
 /* A further channel: height * width numbers, rows from the top. */
 typedef struct zt_channel {
@@ -24,26 +55,23 @@ typedef struct zt_channel {
 } zt_channel;
 
 /* Linear light, Rec. 709 primaries, float. `pixels` holds height * width * 4 numbers, rows from
- * the top, each pixel R G B A with A = 1 where the picture is opaque. */
+ * the top, each pixel R G B A: colours are multiplied by A, how much of the pixel is covered; 1
+ * where the background is not transparent. */
 typedef struct zt_image {
     int width, height;
     float *pixels;
     zt_channel channels[ZT_IMAGE_CHANNELS_MAX];
     int channel_count;
+    zt_image_info info;
 } zt_image;
 
 /* Makes a black, opaque image. ZT_EARGUMENT where a side is not in 1..ZT_IMAGE_SIDE_MAX. */
 zt_status zt_image_create(zt_image **image, int width, int height);
 void zt_image_free(zt_image **image);
 
-/* Adds a channel of zeros, which asks rendering to fill it. Known are
- *
- *   "samples"  how many samples the pixel took
- *   "error"    its estimated standard error in linear light, the root of the mean square of
- * red, green and blue; -1 where there is no estimate, as where all take as many samples
- *
- * `name` must outlive the image. Nothing happens where the image has such a channel already.
- * ZT_EMEMORY; ZT_EARGUMENT where it has ZT_IMAGE_CHANNELS_MAX others. */
+/* Adds a channel of zeros, which asks rendering to fill it where it knows the name
+ * (zoetrope/aov.h). `name` must outlive the image. Nothing happens where the image has such a
+ * channel already. ZT_EMEMORY; ZT_EARGUMENT where it has ZT_IMAGE_CHANNELS_MAX others. */
 zt_status zt_image_add_channel(zt_image *image, const char *name);
 
 /* The numbers of a channel, or NULL. */

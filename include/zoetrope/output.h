@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <zoetrope/hash.h>
 #include <zoetrope/image.h>
 #include <zoetrope/rate.h>
 #include <zoetrope/status.h>
@@ -16,12 +17,43 @@ extern "C" {
 
 typedef struct zt_output zt_output;
 
+/* Something that an output has completed and can find again: an image of numbered ones, or a
+ * piece of a movie. */
+typedef struct zt_output_record {
+    int64_t first; /* an image: its frame's number; a piece: the position of its first frame, as
+                      frames come, from 0 */
+    int64_t count; /* of frames; 1 of an image */
+    zt_hash key;   /* of what decides the bytes: all of its frames' keys, and how they are
+                      written */
+    int64_t bytes; /* an image: the size of its file; a piece: where it ends in the growing film
+                    */
+    zt_hash checksum; /* of an image's file; of what a piece holds, in whatever file that is */
+} zt_output_record;
+
+/* What is to come, and what there is of it. The caller's, until the output is closed. */
+typedef struct zt_output_plan {
+    const int64_t *frames; /* by position: the order in which they come */
+    const zt_hash *keys;   /* likewise: of what each will show; zero: not known before */
+    int64_t count;
+    const zt_output_record *records; /* of earlier runs, in any order; the later ones count */
+    int64_t record_count;
+    bool overwrites; /* files that are not known from the records, and whatever the records say
+                      */
+    /* Is told of each thing that was completed, in turn, from any thread, so that it can be
+     * found again after an interruption. May be NULL. */
+    zt_status (*completed)(void *user, const zt_output_record *record);
+    void *user;
+} zt_output_plan;
+
 /* What an output is told before the first image. */
 typedef struct zt_output_format {
     int width, height;
     zt_rate rate;
     zt_view view;
     int64_t frame_count; /* how many will come; 0 where that is not known */
+    const zt_ocio *ocio; /* of ZT_VIEW_OCIO; else not read */
+    const zt_output_plan
+        *plan; /* NULL: frames come as they do, and what is there is replaced */
 } zt_output_format;
 
 /* A wish for how an output is written. All know, and leave out where they cannot hold it,
@@ -62,7 +94,13 @@ typedef zt_wish zt_output_option;
 zt_status zt_output_open(zt_output **output, const char *target, const zt_output_format *format,
                          const zt_output_option *options, zt_listener listener);
 
-/* Writes the image of `frame`; frames come in rising order. The image stays the caller's. */
+/* Whether the image at a position of the plan has to come: it has not, where what is recorded
+ * of it, with the same key, is there whole. True without a plan. Those that need not come must
+ * not. May take as long as reading a file. */
+bool zt_output_wants(zt_output *output, int64_t position);
+
+/* Writes the image of `frame`; with a plan they come in its order, else in rising order. The
+ * image stays the caller's. */
 zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t frame);
 
 /* Completes the files, gives them their names, and frees the output. What was written so far is

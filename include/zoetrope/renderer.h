@@ -20,6 +20,7 @@ typedef struct zt_render_settings {
     int samples;            /* a pixel */
     int threads;            /* one a core by default; the images do not depend on it */
     zt_precision precision; /* where single is not enough for a frame, a warning tells, once */
+    unsigned aovs;          /* bits of zt_aov, besides those that the description asks for */
 } zt_render_settings;
 
 /* Is told after each frame of a sequence, and asked often, from any thread, whether to stop. */
@@ -41,6 +42,12 @@ zt_output_format zt_renderer_format(const zt_renderer *renderer);
  * are legal: their curves hold. ZT_ESTOPPED when the watcher (may be NULL) said so. */
 zt_status zt_renderer_frame(zt_renderer *renderer, int64_t frame, zt_image *image,
                             const zt_watcher *watcher);
+
+/* The content key of a frame: a hash of all that decides its pixels, which are the frozen
+ * scenes of its opening, what its meshes hold, the settings (size, sampling, precision,
+ * channels, background), and the version of the arithmetic; so neither names nor comments, nor
+ * how the image will be written. Fails as freezing does. */
+zt_status zt_renderer_key(zt_hash *key, zt_renderer *renderer, int64_t frame);
 
 /* What is chosen for a frame, and why: in which precision it is rendered, and at how many
  * moments of the shutter's opening it is looked at; between them everything goes straight on.

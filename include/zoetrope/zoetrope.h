@@ -7,9 +7,12 @@
 #define ZOETROPE_H
 
 #include <zoetrope/animation.h>
+#include <zoetrope/aov.h>
 #include <zoetrope/drawing.h>
 #include <zoetrope/explain.h>
+#include <zoetrope/film.h>
 #include <zoetrope/frames.h>
+#include <zoetrope/hash.h>
 #include <zoetrope/image.h>
 #include <zoetrope/ladder.h>
 #include <zoetrope/manifest.h>

@@ -3,11 +3,8 @@
 #define ZT_BASE_HASH_H
 
 #include <stddef.h>
-#include <stdint.h>
 
-typedef struct zt_hash {
-    uint64_t high, low;
-} zt_hash;
+#include <zoetrope/hash.h>
 
 zt_hash zt_hash_bytes(const void *bytes, size_t size);
 

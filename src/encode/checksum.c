@@ -14,6 +14,7 @@
 
 #include "base/diag.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "encode/aside.h"
 #include "encode/sink.h"
 
@@ -61,17 +62,36 @@ static zt_status open_checksum(void **state, const char *target, const zt_output
     return status;
 }
 
-static zt_status write_checksum(void *state, const zt_image *image, int64_t frame) {
-    checksum *sums = state;
+static zt_status make_line(void **made, void *state, const zt_image *image, int64_t frame) {
+    (void)state;
     size_t pixel_count = (size_t)image->width * (size_t)image->height;
     zt_hash hash = zt_hash_bytes(image->pixels, pixel_count * 4 * sizeof *image->pixels);
-    int length = fprintf(sums->file, "%12" PRId64 " %5dx%-5d %016" PRIx64 "%016" PRIx64 "\n",
-                         frame, image->width, image->height, hash.high, hash.low);
+    *made = zt_text_print("%12" PRId64 " %5dx%-5d %016" PRIx64 "%016" PRIx64 "\n", frame,
+                          image->width, image->height, hash.high, hash.low);
+    return *made ? ZT_OK : ZT_EMEMORY;
+}
+
+static void drop_line(void *state, void *made) {
+    (void)state;
+    free(made);
+}
+
+static zt_status write_line(void *state, void *made, int64_t frame) {
+    (void)frame;
+    checksum *sums = state;
     /* Flushed, so that a full disk is known now and not after hours of rendering. */
-    return length > 0 && fflush(sums->file) == 0 ? ZT_OK : refuse(sums);
+    bool good = fputs(made, sums->file) >= 0 && fflush(sums->file) == 0;
+    free(made);
+    return good ? ZT_OK : refuse(sums);
 }
 
 static const char *const endings[] = {".hash", NULL};
 static const char *const no_options[] = {NULL};
-const zt_sink zt_sink_checksum = {"checksums",   endings,        no_options,
-                                  open_checksum, write_checksum, close_checksum};
+const zt_sink zt_sink_checksum = {.what = "checksums",
+                                  .endings = endings,
+                                  .options = no_options,
+                                  .open = open_checksum,
+                                  .make = make_line,
+                                  .write = write_line,
+                                  .drop = drop_line,
+                                  .close = close_checksum};

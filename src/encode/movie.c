@@ -24,9 +24,24 @@ static zt_status open_movie(void **state, const char *target, const zt_output_fo
     return status;
 }
 
-static zt_status write_movie(void *state, const zt_image *image, int64_t frame) {
+static bool movie_wants(void *state, int64_t position) {
     movie *m = state;
-    return m->door->write(m->state, image, frame);
+    return m->door->wants(m->state, position);
+}
+
+static zt_status make_frame(void **made, void *state, const zt_image *image, int64_t frame) {
+    movie *m = state;
+    return m->door->make(made, m->state, image, frame);
+}
+
+static zt_status write_frame(void *state, void *made, int64_t frame) {
+    movie *m = state;
+    return m->door->write(m->state, made, frame);
+}
+
+static void drop_frame(void *state, void *made) {
+    movie *m = state;
+    m->door->drop(m->state, made);
 }
 
 static zt_status close_movie(void *state, bool keep) {
@@ -39,5 +54,12 @@ static zt_status close_movie(void *state, bool keep) {
 static const char *const endings[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", ".apng", NULL};
 static const char *const options[] = {
     "codec", "crf", "bitrate", "preset", "pixel-format", "encoder-option", NULL};
-const zt_sink zt_sink_movie = {"a movie",  endings,     options,
-                               open_movie, write_movie, close_movie};
+const zt_sink zt_sink_movie = {.what = "a movie",
+                               .endings = endings,
+                               .options = options,
+                               .open = open_movie,
+                               .wants = movie_wants,
+                               .make = make_frame,
+                               .write = write_frame,
+                               .drop = drop_frame,
+                               .close = close_movie};

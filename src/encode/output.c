@@ -8,6 +8,7 @@
 
 #include "base/diag.h"
 #include "base/text.h"
+#include "encode/output.h"
 #include "encode/sink.h"
 
 static const zt_sink *const sinks[] = {&zt_sink_movie, &zt_sink_stills, &zt_sink_checksum};
@@ -114,39 +115,57 @@ zt_status zt_output_open(zt_output **out, const char *target, const zt_output_fo
     return status;
 }
 
-static zt_status check_image(const zt_output *output, const zt_image *image, int64_t frame) {
+static zt_status check_size(const zt_output *output, const zt_image *image) {
     const zt_output_format *format = &output->format;
-    if (image->width != format->width || image->height != format->height) {
-        zt_tell(output->listener, ZT_ERROR,
-                "an image of %dx%d pixels came to an output of %dx%d", image->width,
-                image->height, format->width, format->height);
-        return ZT_EARGUMENT;
-    }
-    if (output->written && frame <= output->last_frame) {
-        zt_tell(output->listener, ZT_ERROR,
-                "frame %" PRId64 " came after frame %" PRId64 "; frames come in rising order",
-                frame, output->last_frame);
-        return ZT_EARGUMENT;
-    }
-    return ZT_OK;
+    if (image->width == format->width && image->height == format->height) return ZT_OK;
+    zt_tell(output->listener, ZT_ERROR, "an image of %dx%d pixels came to an output of %dx%d",
+            image->width, image->height, format->width, format->height);
+    return ZT_EARGUMENT;
 }
 
-static zt_status write_image(zt_output *output, const zt_image *image, int64_t frame) {
-    ZT_TRY(check_image(output, image, frame));
-    ZT_TRY(output->sink->write(output->state, image, frame));
+static zt_status check_order(const zt_output *output, int64_t frame) {
+    if (output->format.plan || !output->written || frame > output->last_frame) return ZT_OK;
+    zt_tell(output->listener, ZT_ERROR,
+            "frame %" PRId64 " came after frame %" PRId64 "; frames come in rising order",
+            frame, output->last_frame);
+    return ZT_EARGUMENT;
+}
+
+bool zt_output_wants(zt_output *output, int64_t position) {
+    const zt_sink *sink = output->sink;
+    return !output->format.plan || !sink->wants || sink->wants(output->state, position);
+}
+
+zt_status zt_output_make(void **made, zt_output *output, const zt_image *image, int64_t frame) {
+    ZT_TRY(check_size(output, image));
+    return output->sink->make(made, output->state, image, frame);
+}
+
+void zt_output_drop(zt_output *output, void *made) { output->sink->drop(output->state, made); }
+
+zt_status zt_output_put(zt_output *output, void *made, int64_t frame) {
+    if (output->failure == ZT_OK) output->failure = check_order(output, frame);
+    if (output->failure != ZT_OK) {
+        zt_output_drop(output, made);
+        return output->failure;
+    }
+    output->failure = output->sink->write(output->state, made, frame);
     output->written = true;
     output->last_frame = frame;
-    return ZT_OK;
+    return output->failure;
 }
 
 zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t frame) {
-    if (output->failure == ZT_OK) output->failure = write_image(output, image, frame);
-    return output->failure;
+    void *made = NULL;
+    if (output->failure == ZT_OK) output->failure = zt_output_make(&made, output, image, frame);
+    if (output->failure != ZT_OK) return output->failure;
+    return zt_output_put(output, made, frame);
 }
 
 zt_status zt_output_close(zt_output **output) {
     if (!*output) return ZT_OK;
-    bool keep = (*output)->written && (*output)->failure == ZT_OK;
+    bool some = (*output)->written || (*output)->format.plan;
+    bool keep = some && (*output)->failure == ZT_OK;
     zt_status status = (*output)->sink->close((*output)->state, keep);
     free(*output);
     *output = NULL;

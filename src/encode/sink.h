@@ -15,10 +15,18 @@ typedef struct zt_sink {
      * knows all options is seen to. */
     zt_status (*open)(void **state, const char *target, const zt_output_format *format,
                       const zt_output_option *options, zt_listener listener);
-    /* After a failure, which is told, only `close` is called. */
-    zt_status (*write)(void *state, const zt_image *image, int64_t frame);
+    /* zt_output_wants(), with a plan; NULL: all. */
+    bool (*wants)(void *state, int64_t position);
+    /* Makes of an image what will be written, without writing it: developed, converted,
+     * compressed. From any thread, several at once, in any order. */
+    zt_status (*make)(void **made, void *state, const zt_image *image, int64_t frame);
+    /* Writes what was made, in turn, and frees it. After a failure, which is told, only `drop`
+     * and `close` are called. */
+    zt_status (*write)(void *state, void *made, int64_t frame);
+    /* Frees what was made and will not be written. */
+    void (*drop)(void *state, void *made);
     /* Frees the state. `keep`: complete the files and give them their names, and tell where
-     * that fails; else remove what is unfinished. */
+     * that fails; else remove what is unfinished, but for what is recorded. */
     zt_status (*close)(void *state, bool keep);
 } zt_sink;
 

@@ -107,29 +107,62 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
     return status;
 }
 
-static zt_status write_image(const stills *images, const zt_image *image, const char *path) {
+static char *path_of(const stills *images, int64_t frame) {
+    if (!images->after) return strdup(images->before);
+    return zt_text_print("%s%0*" PRId64 "%s", images->before, images->digits, frame,
+                         images->after);
+}
+
+static zt_status make_still(void **made, void *state, const zt_image *image, int64_t frame) {
+    const stills *images = state;
+    zt_bytes *bytes = calloc(1, sizeof *bytes);
+    char *path = path_of(images, frame);
+    zt_status status = ZT_EMEMORY;
+    if (bytes && path)
+        status = zt_image_file_encode(bytes, image, images->view, &images->wishes, path,
+                                      images->listener);
+    free(path);
+    if (status == ZT_OK)
+        *made = bytes;
+    else
+        free(bytes);
+    return status;
+}
+
+static void drop_still(void *state, void *made) {
+    (void)state;
+    zt_bytes *bytes = made;
+    free(bytes->data);
+    free(bytes);
+}
+
+static zt_status write_file(const stills *images, const zt_bytes *bytes, const char *path) {
     zt_aside aside;
     ZT_TRY(zt_aside_open(&aside, path, images->listener));
-    zt_status status =
-        zt_image_file_write(image, images->view, &images->wishes, aside.path, images->listener);
+    zt_status status = zt_image_file_put(bytes, aside.path, images->listener);
     if (status == ZT_OK) return zt_aside_keep(&aside, images->listener);
     zt_aside_drop(&aside);
     return status;
 }
 
-static zt_status write_stills(void *state, const zt_image *image, int64_t frame) {
+static zt_status write_still(void *state, void *made, int64_t frame) {
     stills *images = state;
-    if (images->after) {
-        char *path = zt_text_print("%s%0*" PRId64 "%s", images->before, images->digits, frame,
-                                   images->after);
-        zt_status status = path ? write_image(images, image, path) : ZT_EMEMORY;
-        free(path);
-        return status;
-    }
-    if (images->single_written) return refuse_several(images);
+    char *path = path_of(images, frame);
+    zt_status status = path ? ZT_OK : ZT_EMEMORY;
+    if (status == ZT_OK && !images->after && images->single_written)
+        status = refuse_several(images);
+    if (status == ZT_OK) status = write_file(images, made, path);
     images->single_written = true;
-    return write_image(images, image, images->before);
+    free(path);
+    drop_still(state, made);
+    return status;
 }
 
-const zt_sink zt_sink_stills = {"images",    zt_image_file_endings, zt_image_file_options,
-                                open_stills, write_stills,          close_stills};
+const zt_sink zt_sink_stills = {.what = "images",
+                                .endings = zt_image_file_endings,
+                                .options = zt_image_file_options,
+                                .open = open_stills,
+                                .make = make_still,
+                                .write = write_still,
+                                .drop = drop_still,
+                                .close = close_stills};

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 
 #include "base/text.h"
 #include "encode/aside.h"
@@ -22,6 +23,7 @@ typedef struct movie {
     zt_output_option *options; /* a copy, which the choice points into */
     zt_output_format format;
     zt_video_pixels *pixels;
+    mtx_t converting;
     zt_aside aside;
     zt_video_writer writer; /* of the film; of a GIF only when its palette is known */
     int64_t frame_count;
@@ -39,6 +41,7 @@ static void movie_free(movie *m) {
     zt_video_writer_close(&m->writer);
     zt_video_writer_close(&m->store);
     zt_video_pixels_close(&m->pixels);
+    mtx_destroy(&m->converting);
     if (m->door) m->door->close(m->palette);
     for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) av_frame_free(&m->samples[i].frame);
     zt_aside_drop(&m->aside);
@@ -135,6 +138,10 @@ static zt_status open_movie(void **state, const char *target, const zt_output_fo
     zt_libav_listen();
     movie *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
+    if (mtx_init(&m->converting, mtx_plain) != thrd_success) {
+        free(m);
+        return ZT_EMEMORY;
+    }
     m->format = *format;
     m->ear.listener = listener;
     zt_status status = open_all(m, target, options);
@@ -167,14 +174,34 @@ static zt_status put(movie *m, AVFrame *frame) {
     return zt_video_writer_put(&m->store, frame, &m->store_ear);
 }
 
-static zt_status write_movie(void *state, const zt_image *image, int64_t frame_number) {
-    (void)frame_number; /* a movie has no gaps and begins at 0, whatever the numbers */
+static bool movie_wants(void *state, int64_t position) {
+    (void)state, (void)position;
+    return true;
+}
+
+static zt_status make_frame(void **made, void *state, const zt_image *image, int64_t number) {
+    (void)number; /* a movie has no gaps and begins at 0, whatever the numbers */
     movie *m = state;
-    zt_libav_listen();
     AVFrame *frame = NULL;
-    ZT_TRY(zt_video_pixels_convert(&frame, m->pixels, image, &m->ear));
-    zt_status status = put(m, frame);
+    zt_libav_listen();
+    mtx_lock(&m->converting);
+    zt_status status = zt_video_pixels_convert(&frame, m->pixels, image, &m->ear);
+    mtx_unlock(&m->converting);
+    *made = frame;
+    return status;
+}
+
+static void drop_frame(void *state, void *made) {
+    (void)state;
+    AVFrame *frame = made;
     av_frame_free(&frame);
+}
+
+static zt_status write_frame(void *state, void *made, int64_t number) {
+    (void)number;
+    zt_libav_listen();
+    zt_status status = put(state, made);
+    drop_frame(state, made);
     return status;
 }
 
@@ -241,4 +268,5 @@ static zt_status close_movie(void *state, bool keep) {
     return status;
 }
 
-ZT_MODULE_DOOR(zt_video_door, video) = {open_movie, write_movie, close_movie};
+ZT_MODULE_DOOR(zt_video_door, video) = {open_movie,  movie_wants, make_frame,
+                                        write_frame, drop_frame,  close_movie};

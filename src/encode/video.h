@@ -14,7 +14,10 @@
 typedef struct zt_video_door {
     zt_status (*open)(void **state, const char *target, const zt_output_format *format,
                       const zt_output_option *options, zt_listener listener);
-    zt_status (*write)(void *state, const zt_image *image, int64_t frame);
+    bool (*wants)(void *state, int64_t position);
+    zt_status (*make)(void **made, void *state, const zt_image *image, int64_t frame);
+    zt_status (*write)(void *state, void *made, int64_t frame);
+    void (*drop)(void *state, void *made);
     zt_status (*close)(void *state, bool keep);
 } zt_video_door;
 

@@ -22,12 +22,12 @@
 enum {
     BUCKET_BITS = 16,
     BUCKET_COUNT = (ONE_BITS - FLOOR_BITS) >> BUCKET_BITS,
-    VIEW_COUNT = 2
+    VIEWS = ZT_VIEW_COUNT
 };
 
 /* (code << 16) + 2^16 - step: with the float's low 16 bits added, the carry is the step from
  * the bucket's first code to the next. Without a step, `step` is 2^16, and nothing carries. */
-static uint32_t tables[VIEW_COUNT][BUCKET_COUNT];
+static uint32_t tables[VIEWS][BUCKET_COUNT];
 static once_flag tables_once = ONCE_FLAG_INIT;
 
 /* IEC 61966-2-1. */
@@ -127,8 +127,8 @@ typedef struct deep_table {
     uint32_t begins[DEEP_MAX + 2]; /* the first place of each code */
 } deep_table;
 
-static deep_table deep_tables[VIEW_COUNT];
-static once_flag deep_once[VIEW_COUNT] = {ONCE_FLAG_INIT, ONCE_FLAG_INIT};
+static deep_table deep_tables[VIEWS];
+static once_flag deep_once[VIEWS] = {ONCE_FLAG_INIT, ONCE_FLAG_INIT};
 
 /* The exact code at a place, not yet rounded down. */
 static double deep_value(uint32_t place, zt_view view) {

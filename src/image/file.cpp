@@ -1,14 +1,13 @@
 /* The door to OpenImageIO. The only C++ here: no exception leaves, nothing of it is seen
  * outside.
  *
- * Files are encoded in memory and written here: on a full disk OpenImageIO's PNG writer reports
- * success, and libjpeg prints and ends the process. */
+ * Files are encoded in memory and not written here: on a full disk OpenImageIO's PNG writer
+ * reports success, and libjpeg prints and ends the process. */
 #include "image/file.h"
 
 #include <cfloat>
-#include <errno.h>
 #include <memory>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <string>
 
@@ -132,20 +131,8 @@ bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view
     return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
-zt_status write_bytes(const Bytes &bytes, const char *path, zt_listener listener) {
-    FILE *file = fopen(path, "wb");
-    if (!file) return refuse(listener, "write", path, strerror(errno));
-    bool good = fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    int error = errno;
-    if (fclose(file) != 0 && good) {
-        good = false;
-        error = errno;
-    }
-    return good ? ZT_OK : refuse(listener, "write", path, strerror(error));
-}
-
-zt_status write(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
-                const char *path, zt_listener listener) {
+zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
+                 const zt_image_wishes *wishes, const char *path, zt_listener listener) {
     Bytes bytes;
     OIIO::Filesystem::IOVecOutput memory(
         bytes); /* outlives `output`, which may write at its end */
@@ -155,7 +142,11 @@ zt_status write(const zt_image *image, zt_view view, const zt_image_wishes *wish
     if (!output->set_ioproxy(&memory) || !output->open(path, spec_for(image, wishes)) ||
         !write_pixels(*output, image, view) || !output->close())
         return refuse(listener, "write", path, output->geterror());
-    return write_bytes(bytes, path, listener);
+    made->data = static_cast<unsigned char *>(malloc(bytes.size()));
+    if (!made->data) return ZT_EMEMORY;
+    memcpy(made->data, bytes.data(), bytes.size());
+    made->size = bytes.size();
+    return ZT_OK;
 }
 
 /* Spreads `channel_count` numbers a pixel over R G B A. */
@@ -188,10 +179,12 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     return ZT_OK;
 }
 
-zt_status write_guarded(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
-                        const char *path, zt_listener listener) {
-    return without_exceptions(listener, "write", path,
-                              [&] { return write(image, view, wishes, path, listener); });
+zt_status encode_guarded(zt_bytes *bytes, const zt_image *image, zt_view view,
+                         const zt_image_wishes *wishes, const char *path,
+                         zt_listener listener) {
+    return without_exceptions(listener, "write", path, [&] {
+        return encode(bytes, image, view, wishes, path, listener);
+    });
 }
 
 zt_status read_guarded(zt_image **image, const char *path, zt_listener listener) {
@@ -201,4 +194,4 @@ zt_status read_guarded(zt_image **image, const char *path, zt_listener listener)
 
 } // namespace
 
-ZT_MODULE_DOOR(zt_image_file_door, image_file) = {write_guarded, read_guarded};
+ZT_MODULE_DOOR(zt_image_file_door, image_file) = {encode_guarded, read_guarded};

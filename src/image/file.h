@@ -3,6 +3,8 @@
 #ifndef ZT_IMAGE_FILE_H
 #define ZT_IMAGE_FILE_H
 
+#include <stddef.h>
+
 #include <zoetrope/image.h>
 #include <zoetrope/status.h>
 
@@ -16,9 +18,23 @@ extern "C" {
  * anything to write. ZT_EUNSUPPORTED after telling. */
 zt_status zt_image_file_ready(zt_listener listener);
 
-/* Writes R, G and B of `image` to `path` in the format that is wished for: integers developed
- * by the view, floats of linear light (what a half float cannot hold becomes its largest
- * number). ZT_EFILE after telling why. */
+/* A file's contents, of the caller to free. */
+typedef struct zt_bytes {
+    unsigned char *data;
+    size_t size;
+} zt_bytes;
+
+/* Makes of `image` a file in the format that is wished for, in memory: R, G and B, integers
+ * developed by the view, floats of linear light (what a half float cannot hold becomes its
+ * largest number). `path` is for messages. ZT_EFILE after telling why. From any thread. */
+zt_status zt_image_file_encode(zt_bytes *bytes, const zt_image *image, zt_view view,
+                               const zt_image_wishes *wishes, const char *path,
+                               zt_listener listener);
+
+/* Writes bytes to a file. ZT_EFILE after telling why. */
+zt_status zt_image_file_put(const zt_bytes *bytes, const char *path, zt_listener listener);
+
+/* Both in one. */
 zt_status zt_image_file_write(const zt_image *image, zt_view view,
                               const zt_image_wishes *wishes, const char *path,
                               zt_listener listener);
@@ -29,10 +45,10 @@ zt_status zt_image_file_write(const zt_image *image, zt_view view,
  * claims. */
 zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener listener);
 
-/* The module's table: what the two functions above are made of. */
+/* The module's table: what the functions above are made of. */
 typedef struct zt_image_file_door {
-    zt_status (*write)(const zt_image *image, zt_view view, const zt_image_wishes *wishes,
-                       const char *path, zt_listener listener);
+    zt_status (*encode)(zt_bytes *bytes, const zt_image *image, zt_view view,
+                        const zt_image_wishes *wishes, const char *path, zt_listener listener);
     zt_status (*read)(zt_image **image, const char *path, zt_listener listener);
 } zt_image_file_door;
 

@@ -1,0 +1,17 @@
+/* An output whose images are made by several threads: zt_output_write() in its two steps. */
+#ifndef ZT_ENCODE_OUTPUT_H
+#define ZT_ENCODE_OUTPUT_H
+
+#include <zoetrope/output.h>
+
+/* Makes of an image what will be written; from any thread, several at once, in any order. */
+zt_status zt_output_make(void **made, zt_output *output, const zt_image *image, int64_t frame);
+
+/* Writes what was made, in turn, as zt_output_write() asks for, and frees it whatever happens.
+ */
+zt_status zt_output_put(zt_output *output, void *made, int64_t frame);
+
+/* Frees what was made and will not be written. */
+void zt_output_drop(zt_output *output, void *made);
+
+#endif
