@@ -17,7 +17,9 @@ typedef struct zt_options {
     const char *file;              /* the description */
     const char *target;            /* NULL: the command's own */
     const char *question;          /* of explain: "ball.center@37"; NULL: precisions */
-    const char *frame_list;        /* of report, as zt_frames_read takes it; or NULL */
+    const char *frame_list;        /* as zt_frames_read takes it, not yet read; or NULL */
+    int64_t part, part_count;      /* of the frames, as zt_frames_part takes it; 0: all */
+    bool overwrites;               /* what is there, instead of going on with it */
     bool filters;                  /* of report: each of them */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;
