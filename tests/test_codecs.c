@@ -21,8 +21,8 @@
 enum { CARD = 48, WIDTH = PATCH_COLUMNS * CARD, HEIGHT = PATCH_COUNT / PATCH_COLUMNS * CARD };
 enum { FRAME_COUNT = 10 };
 
-static const zt_output_format format = {WIDTH,       HEIGHT, {24, 1}, ZT_VIEW_SRGB,
-                                        FRAME_COUNT, NULL,   NULL};
+static const zt_output_format format = {WIDTH,        HEIGHT,      {24, 1},
+                                        ZT_VIEW_SRGB, FRAME_COUNT, NULL};
 
 /* One way to write a movie, and what is to be found. */
 typedef struct way {
@@ -318,7 +318,7 @@ static void refusals(void **state) {
         snprintf(target, sizeof target, "no/%s", cases[i].target);
         const zt_output_option options[] = {{cases[i].name, cases[i].value}, {NULL, NULL}};
         zt_output_format wrong = {
-            cases[i].width, cases[i].height, {cases[i].rate, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+            cases[i].width, cases[i].height, {cases[i].rate, 1}, ZT_VIEW_SRGB, 0, NULL};
         heard h;
         zt_output *output;
         assert_int_not_equal(zt_output_open(&output, target, &wrong, options, listener_of(&h)),
@@ -340,8 +340,7 @@ static void no_room(void **state) {
     (void)state;
     const char *const targets[] = {"room/a.mp4", "room/a.gif", "room/a.apng"};
     for (int i = 0; i < 3; i++) {
-        zt_output_format endless = {3840, 2160, {24, 1}, ZT_VIEW_SRGB, INT64_C(1) << 40,
-                                    NULL, NULL};
+        zt_output_format endless = {3840, 2160, {24, 1}, ZT_VIEW_SRGB, INT64_C(1) << 40, NULL};
         heard h;
         zt_output *output;
         assert_int_equal(zt_output_open(&output, targets[i], &endless, NULL, listener_of(&h)),

@@ -11,7 +11,7 @@
 #include "files.h"
 #include "movies.h"
 
-static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
 
 /* time_base * ticks == count / rate, as rationals. */
 static void assert_time(int64_t ticks, AVRational time_base, int64_t count, zt_rate rate) {
@@ -247,7 +247,7 @@ static void colours(void **state) {
  * so. */
 static void chroma_is_left(void **state) {
     (void)state;
-    zt_output_format format = {64, 64, {24, 1}, ZT_VIEW_RAW, 0, NULL, NULL};
+    zt_output_format format = {64, 64, {24, 1}, ZT_VIEW_RAW, 0, NULL};
     zt_image *image;
     assert_int_equal(zt_image_create(&image, 64, 64), ZT_OK);
     for (int y = 0; y < 64; y++)
@@ -283,14 +283,14 @@ static void impossible_sizes(void **state) {
         heard h;
         zt_output *output;
         zt_output_format format = {
-            sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+            sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
         assert_int_not_equal(
             zt_output_open(&output, "sizes/a.mp4", &format, NULL, listener_of(&h)), ZT_OK);
         assert_null(output);
         assert_told(&h, sizes[i].words);
         assert_false(exists("sizes/a.mp4") || exists("sizes/a.mp4.part"));
     }
-    zt_output_format least = {2, 2, {24, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+    zt_output_format least = {2, 2, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
     write_movie("least.mp4", &least, 3);
     film m = film_open("least.mp4");
     assert_int_equal(m.packet_count, 3);
@@ -389,7 +389,7 @@ static void interrupted_anywhere(void **state) {
  * an older film stays. With room for the pictures but not for the table at the end, too. */
 static void full_disk(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
     write_movie("whole.mp4", &format, 100);
     struct stat whole;
     assert_int_equal(stat("whole.mp4", &whole), 0);
@@ -424,7 +424,7 @@ static void full_disk(void **state) {
 /* The same film is the same file, also where the process may use only one core. */
 static void same_bits(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL, NULL};
+    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
     write_movie("a.mp4", &format, 60);
     write_movie("b.mp4", &format, 60);
     assert_true(same_files("a.mp4", "b.mp4"));

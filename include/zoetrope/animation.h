@@ -30,7 +30,6 @@ typedef struct zt_film {
     zt_rate rate;
     int64_t frame_count; /* at least 1 */
     zt_view view;
-    zt_ocio ocio; /* of ZT_VIEW_OCIO; its texts are the animation's own */
     zt_sampling sampling;
     zt_shutter shutter;
     const char *audio; /* the path of its sound, or NULL; the animation's own */

@@ -15,17 +15,15 @@ extern "C" {
 
 /* How linear light becomes the numbers of a display. */
 typedef enum zt_view {
-    ZT_VIEW_RAW,  /* the numbers as they are, cut to 0..1 */
-    ZT_VIEW_SRGB, /* the sRGB transfer function, IEC 61966-2-1 */
-    ZT_VIEW_COUNT,
-    ZT_VIEW_OCIO = ZT_VIEW_COUNT /* a zt_ocio says which */
+    ZT_VIEW_RAW,    /* the numbers as they are, cut to 0..1 */
+    ZT_VIEW_SRGB,   /* the sRGB transfer function, IEC 61966-2-1 */
+    ZT_VIEW_REC709, /* the transfer function of cameras, ITU-R BT.709-6 */
+    ZT_VIEW_FILMIC, /* a tone curve, under which only 11.2 is white, then the sRGB function */
+    ZT_VIEW_COUNT
 } zt_view;
 
-/* A view of an OpenColorIO configuration. NULL means: the configuration that $OCIO names, its
- * default display, that display's default view. */
-typedef struct zt_ocio {
-    const char *config, *display, *view;
-} zt_ocio;
+/* What a view is called: "srgb". */
+const char *zt_view_name(zt_view view);
 
 /* The largest width and height an image may have, and how many further channels. */
 enum { ZT_IMAGE_SIDE_MAX = 65536, ZT_IMAGE_CHANNELS_MAX = 24 };

@@ -51,7 +51,6 @@ typedef struct zt_output_format {
     zt_rate rate;
     zt_view view;
     int64_t frame_count; /* how many will come; 0 where that is not known */
-    const zt_ocio *ocio; /* of ZT_VIEW_OCIO; else not read */
     const zt_output_plan
         *plan; /* NULL: frames come as they do, and what is there is replaced */
 } zt_output_format;

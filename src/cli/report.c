@@ -100,7 +100,7 @@ static void print_film(const zt_film *film) {
     printf("frames     %" PRId64 " (0 to %" PRId64 ")\n", film->frame_count,
            film->frame_count - 1);
     printf("duration   %.6g s\n", zt_rate_time(film->rate, film->frame_count));
-    printf("view       %s\n", film->view == ZT_VIEW_RAW ? "raw" : "srgb");
+    printf("view       %s\n", zt_view_name(film->view));
     if (film->sampling.min == film->sampling.max)
         printf("samples    %d a pixel\n", film->sampling.max);
     else

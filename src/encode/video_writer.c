@@ -46,7 +46,7 @@ static void describe(char text[SETTINGS_MAX], const zt_video_choice *choice,
     zt_video_describe(how, sizeof how, choice);
     snprintf(text, SETTINGS_MAX, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s", how,
              format->width, format->height, format->rate.num, format->rate.den,
-             format->view == ZT_VIEW_RAW ? "raw" : "srgb");
+             zt_view_name(format->view));
 }
 
 /* What the file says of itself, where its kind holds that. */

@@ -30,6 +30,11 @@ enum {
 static uint32_t tables[VIEWS][BUCKET_COUNT];
 static once_flag tables_once = ONCE_FLAG_INIT;
 
+const char *zt_view_name(zt_view view) {
+    static const char *const names[ZT_VIEW_COUNT] = {"raw", "srgb", "rec709", "filmic"};
+    return names[view];
+}
+
 /* IEC 61966-2-1. */
 static double linear_to_srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;

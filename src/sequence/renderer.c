@@ -47,7 +47,10 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     }
     r->format = (zt_output_format){settings->width ? settings->width : film->width,
                                    settings->height ? settings->height : film->height,
-                                   film->rate, film->view, 0, &film->ocio, NULL};
+                                   film->rate,
+                                   film->view,
+                                   0,
+                                   NULL};
     zt_status status =
         open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
     if (status != ZT_OK) zt_renderer_close(&r);
