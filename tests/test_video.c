@@ -112,7 +112,7 @@ static void times_are_exact(void **state) {
 static void tags(void **state) {
     (void)state;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {322, 178, {24, 1}, view, 0, NULL, NULL};
+        zt_output_format format = {322, 178, {24, 1}, view, 0, NULL};
         write_movie("tags.mp4", &format, 5);
         film m = film_open("tags.mp4");
         const AVCodecParameters *p = m.stream->codecpar;
@@ -221,8 +221,8 @@ static void colours(void **state) {
     (void)state;
     const int frame_count = 30, width = PATCH_COLUMNS * PATCH;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {
-            width, PATCH_COUNT / PATCH_COLUMNS * PATCH, {24, 1}, view, 0, NULL, NULL};
+        zt_output_format format = {width, PATCH_COUNT / PATCH_COLUMNS * PATCH, {24, 1}, view, 0,
+                                   NULL};
         zt_image *card = test_card(PATCH);
         zt_output *output = open_movie("card.mp4", &format);
         for (int f = 0; f < frame_count; f++)
