@@ -56,7 +56,7 @@ set(doors
     "librsvg/|encode/raster.c")
 
 # Headers of C, POSIX and the compiler that any file may include, and those of C++, which have no ending.
-set(common "^[a-z_]+$|^(assert|ctype|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
+set(common "^[a-z_]+$|^(assert|ctype|dirent|errno|fcntl|fenv|float|inttypes|limits|locale|math|memory|sched|setjmp|\
 signal|stdalign|stdarg|stdatomic|stdbool|stddef|stdint|stdio|stdlib|string|strings|threads|time|\
 unistd|xmmintrin|sys/[a-z]+)(\\.h)?$")
 

@@ -101,7 +101,7 @@ static void mistakes(void **state) {
     assert_refused("1-5x", "a frame's number belongs here");
     assert_refused("1-5x0", "at least 1");
     assert_refused("1-5:-2", "at least 1");
-    assert_refused("100", "there is no frame 100; the film has 0 to 99");
+    assert_refused("100", "there is no frame 100: the film has frames 0 to 99");
     assert_refused("-101", "there is no frame -101");
     assert_refused("0-99999999999999999999999", "there is no frame");
     assert_refused("all", "at \"all\"");

@@ -67,6 +67,11 @@ typedef struct zt_image {
 zt_status zt_image_create(zt_image **image, int width, int height);
 void zt_image_free(zt_image **image);
 
+/* Reads an image file's numbers as they are stored: an OpenEXR file's linear light exactly,
+ * integers as 0..1 with no transfer function undone; grey as R = G = B, A = 1 where the file
+ * has none. The caller frees the image. ZT_EFILE after telling why. */
+zt_status zt_image_read(zt_image **image, const char *path, zt_listener listener);
+
 /* Adds a channel of zeros, which asks rendering to fill it where it knows the name
  * (zoetrope/aov.h). `name` must outlive the image. Nothing happens where the image has such a
  * channel already. ZT_EMEMORY; ZT_EARGUMENT where it has ZT_IMAGE_CHANNELS_MAX others. */

@@ -4,13 +4,14 @@
 #include <limits.h>
 #include <string.h>
 
-#define BIT(option) (1U << ZT_OPTION_##option)
+#define BIT(option) (UINT64_C(1) << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
 #define MOVIE                                                                                  \
     (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
      BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO))
 #define ONE_FRAME                                                                              \
-    (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) | BIT(PRECISION))
+    (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(OVERWRITE) | BIT(SIZE) | BIT(SAMPLES) |              \
+     BIT(THREADS) | BIT(PRECISION))
 #define FINISHED                                                                               \
     (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
      BIT(MANIFEST))
@@ -29,12 +30,13 @@ static const char reports[] =
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
-                           images, FINISHED | BIT(FRAMES)},
+                           images, FINISHED | BIT(FRAMES) | BIT(CHUNK)},
     [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
                           "output/NAME.NNNN.png", images, FINISHED | BIT(PIXEL) | BIT(SAMPLE)},
     [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
                             "A quick movie: a quarter of the size, one sample a pixel",
-                            "output/NAME.preview.mp4", images, ONE_FRAME | BIT(FRAMES)},
+                            "output/NAME.preview.mp4", images,
+                            ONE_FRAME | BIT(FRAMES) | BIT(CHUNK)},
     [ZT_COMMAND_CHECK] = {"check", "FILE", 1, 0,
                           "Tells mistakes, what is probably not meant, what FILE holds", NULL,
                           NULL, ANYWHERE},
@@ -57,9 +59,13 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
 const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
     [ZT_OPTION_OUTPUT] = {"output", 'o', "TARGET", "where the results go"},
     [ZT_OPTION_FRAMES] = {"frames", 0, "10-40",
-                          "only these frames, or one (7); the first is 0"},
+                          "only these frames, or one (7); the first is 0; where images are "
+                          "made also 1-100x5, 100-1, 1-100:10, -24--1, with commas between"},
     [ZT_OPTION_FRAME] = {"frame", 0, "10,40",
                          "the frames to measure; the middle one by default"},
+    [ZT_OPTION_CHUNK] = {"chunk", 0, "3/8", "of the frames, the third of eight equal parts"},
+    [ZT_OPTION_OVERWRITE] = {"overwrite", 0, NULL, "render again what is there already"},
+    [ZT_OPTION_RATE] = {"rate", 0, "30000/1001", "frames a second; 24 by default"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N",
                            "samples a pixel, instead of the description's; 4-64 with --error"},
@@ -181,7 +187,7 @@ void zt_command_help(FILE *stream, zt_command command) {
         print_summary(stream);
     fputs("\nOptions:\n", stream);
     for (int i = 0; i < ZT_OPTION_COUNT; i++)
-        if (!row || row->takes & 1U << i) print_option(stream, &zt_options_known[i]);
+        if (!row || row->takes >> i & 1) print_option(stream, &zt_options_known[i]);
     if (!row)
         fputs("\n\"zoetrope COMMAND --help\" tells more of a command.\n", stream);
     else if (row->target)

@@ -4,6 +4,7 @@
 #define ZT_CLI_COMMANDS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef enum zt_command {
@@ -25,7 +26,7 @@ typedef struct zt_command_row {
     const char *help;
     const char *target; /* where its images go by default, as help shows it; NULL: none */
     const char *forms;  /* of the target, for help */
-    unsigned takes;     /* a bit for each option */
+    uint64_t takes;     /* a bit for each option */
 } zt_command_row;
 
 extern const zt_command_row zt_commands[ZT_COMMAND_COUNT];
@@ -34,6 +35,9 @@ typedef enum zt_option {
     ZT_OPTION_OUTPUT,
     ZT_OPTION_FRAMES,
     ZT_OPTION_FRAME,
+    ZT_OPTION_CHUNK,
+    ZT_OPTION_OVERWRITE,
+    ZT_OPTION_RATE,
     ZT_OPTION_SIZE,
     ZT_OPTION_SAMPLES,
     ZT_OPTION_ERROR,

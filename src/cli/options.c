@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
-static const int64_t frame_max = INT64_C(1) << 40;
+#include "cli/values.h"
+
+enum { THREADS_MAX = 1024 };
 
 /* The arguments, sorted but not yet understood. */
 typedef struct arguments {
@@ -138,68 +139,28 @@ static bool sort_arguments(arguments *sorted, int argc, char **argv, zt_report *
     return true;
 }
 
-/* Reads decimal digits and moves `text` behind them; false without any, or beyond `max`. */
-static bool read_digits(int64_t *number, const char **text, int64_t max) {
-    const char *c = *text;
-    for (*number = 0; *c >= '0' && *c <= '9'; c++) {
-        *number = *number * 10 + (*c - '0');
-        if (*number > max) return false;
-    }
-    bool some = c > *text;
-    *text = c;
-    return some;
-}
-
-static bool read_count(int *count, zt_option option, const char *text, int max,
-                       zt_report *report) {
-    const char *rest = text;
-    int64_t number = 0;
-    bool good = read_digits(&number, &rest, max) && !*rest && number > 0;
-    if (!good)
-        zt_report_say(report, ZT_ERROR, "--%s %s: must be a number from 1 to %d",
-                      zt_options_known[option].name, text, max);
-    *count = (int)number;
-    return good;
-}
-
-static bool read_size(zt_render_settings *settings, const char *text, zt_report *report) {
-    const char *rest = text;
-    int64_t width = 0, height = 0;
-    bool good = read_digits(&width, &rest, ZT_IMAGE_SIDE_MAX) && *rest++ == 'x' &&
-                read_digits(&height, &rest, ZT_IMAGE_SIDE_MAX) && !*rest && width > 0 &&
-                height > 0;
-    if (!good)
-        zt_report_say(report, ZT_ERROR,
-                      "--size %s: must be width and height, such as 640x360, each from 1 to %d",
-                      text, ZT_IMAGE_SIDE_MAX);
-    settings->width = (int)width;
-    settings->height = (int)height;
-    return good;
-}
-
-/* "10-40", or "7" alone. */
+/* Where images are made, what stands there is read when it is known how many frames the film
+ * has. */
 static bool read_frames(zt_options *options, const char *text, zt_report *report) {
-    const char *rest = text;
-    bool good = read_digits(&options->first, &rest, frame_max);
-    options->last = options->first;
-    if (good && *rest == '-') {
-        rest++;
-        good = read_digits(&options->last, &rest, frame_max);
-    }
-    good = good && !*rest && options->first <= options->last;
-    if (!good)
+    bool is_list =
+        options->command == ZT_COMMAND_RENDER || options->command == ZT_COMMAND_PREVIEW;
+    int64_t first, last;
+    bool good = zt_value_range(&first, &last, text);
+    if (is_list) options->frame_list = text;
+    if (!good && !is_list)
         zt_report_say(report, ZT_ERROR,
                       "--frames %s: must be a range, such as 10-40, or one frame, such as 7",
                       text);
+    if (!good) return is_list;
+    options->first = first;
+    options->last = last;
     options->all_frames = false;
-    return good;
+    return true;
 }
 
 static bool read_frame(zt_options *options, const char *text, zt_report *report) {
-    const char *rest = text;
-    bool good = read_digits(&options->first, &rest, frame_max) && !*rest;
+    bool good = !strchr(text, '-') && zt_value_range(&options->first, &options->last, text);
     if (!good) zt_report_say(report, ZT_ERROR, "%s is not the number of a frame", text);
-    options->last = options->first;
     options->all_frames = false;
     return good;
 }
@@ -229,67 +190,6 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
     return true;
 }
 
-static bool read_precision(zt_render_settings *settings, const char *text, zt_report *report) {
-    static const char *const names[] = {[ZT_PRECISION_AUTO] = "auto",
-                                        [ZT_PRECISION_SINGLE] = "single",
-                                        [ZT_PRECISION_DOUBLE] = "double"};
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(text, names[i]) != 0) continue;
-        settings->precision = (zt_precision)i;
-        return true;
-    }
-    zt_report_say(report, ZT_ERROR, "--precision %s: must be single, double or auto", text);
-    return false;
-}
-
-/* "2 s", "1.5 min": seconds. */
-static bool read_duration(double *seconds, zt_option option, const char *text,
-                          zt_report *report) {
-    static const struct {
-        const char *name;
-        double seconds;
-    } units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
-    size_t length = strspn(text, "0123456789.");
-    char *end;
-    double number = strtod(text, &end);
-    const char *unit = text + length + strspn(text + length, " ");
-    for (int i = 0; i < 4 && length > 0 && end == text + length; i++)
-        if (strcmp(unit, units[i].name) == 0) *seconds = number * units[i].seconds;
-    if (*seconds > 0 && *seconds < 1e10) return true;
-    zt_report_say(report, ZT_ERROR,
-                  "--%s %s: must be a time, such as 500 ms, 2 s, 20 min or 8 h",
-                  zt_options_known[option].name, text);
-    return false;
-}
-
-/* "200,120": column and row. */
-static bool read_pixel(zt_options *options, const char *text, zt_report *report) {
-    const char *rest = text;
-    int64_t column = 0, row = 0;
-    options->replays = read_digits(&column, &rest, ZT_IMAGE_SIDE_MAX - 1) && *rest++ == ',' &&
-                       read_digits(&row, &rest, ZT_IMAGE_SIDE_MAX - 1) && !*rest;
-    options->column = (int)column;
-    options->row = (int)row;
-    if (!options->replays)
-        zt_report_say(
-            report, ZT_ERROR,
-            "--pixel %s: must be column and row, counted from 0 at the top left, such "
-            "as 200,120",
-            text);
-    return options->replays;
-}
-
-static bool read_sample(zt_options *options, const char *text, zt_report *report) {
-    const char *rest = text;
-    int64_t number = 0;
-    bool good = read_digits(&number, &rest, SAMPLES_MAX - 1) && !*rest;
-    if (!good)
-        zt_report_say(report, ZT_ERROR, "--sample %s: must be a number from 0 to %d", text,
-                      SAMPLES_MAX - 1);
-    options->sample = (int)number;
-    return good;
-}
-
 /* Options that contradict each other, or say something only with another one. */
 static bool fit_together(const char *const *values, zt_report *report) {
     static const zt_option exclusive[][2] = {{ZT_OPTION_TIME, ZT_OPTION_TIME_PER_FRAME},
@@ -316,28 +216,6 @@ static bool fit_together(const char *const *values, zt_report *report) {
     return true;
 }
 
-/* "64", or "4-64" where an error is given as well. */
-static bool read_samples(int64_t *min, int64_t *max, const char *text, const char *error,
-                         zt_report *report) {
-    const char *rest = text;
-    bool good = read_digits(max, &rest, SAMPLES_MAX) && *max > 0;
-    *min = 0;
-    if (good && *rest == '-') {
-        *min = *max;
-        rest++;
-        good = *min > 0 && read_digits(max, &rest, SAMPLES_MAX) && *min <= *max;
-    }
-    good = good && !*rest;
-    if (!good)
-        zt_report_say(report, ZT_ERROR,
-                      "--samples %s: must be a number from 1 to %d, or a range, such as 4-64",
-                      text, SAMPLES_MAX);
-    else if (*min && !error)
-        zt_report_say(report, ZT_ERROR, "--samples %s needs --error, such as --error=0.002",
-                      text);
-    return good && (!*min || error);
-}
-
 /* What is said of sampling stands in for the description's words; a number of samples by itself
  * does so for all of them. */
 static bool set_sampling(zt_options *options, const char *const *values, zt_report *report) {
@@ -348,7 +226,7 @@ static bool set_sampling(zt_options *options, const char *const *values, zt_repo
     int64_t min = 0, max = 0;
     if (quality && !add_set(options, "film.quality", quality, report)) return false;
     if (filter && !add_set(options, "film.filter", filter, report)) return false;
-    if (samples && !read_samples(&min, &max, samples, error, report)) return false;
+    if (samples && !zt_value_samples(&min, &max, samples, error, report)) return false;
     if (!error && !quality) {
         options->settings.samples = (int)max;
         return true;
@@ -369,7 +247,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     const zt_command_row *command = &zt_commands[options->command];
     const char *const *values = sorted->values;
     for (int i = 0; i < ZT_OPTION_COUNT; i++)
-        if (values[i] && !(command->takes & 1U << i)) {
+        if (values[i] && !(command->takes >> i & 1)) {
             zt_report_say(report, ZT_ERROR, "%s takes no --%s", command->name,
                           zt_options_known[i].name);
             return false;
@@ -377,26 +255,33 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     const char *frames = values[ZT_OPTION_FRAMES], *size = values[ZT_OPTION_SIZE],
                *threads = values[ZT_OPTION_THREADS], *precision = values[ZT_OPTION_PRECISION],
                *time = values[ZT_OPTION_TIME], *frame_time = values[ZT_OPTION_TIME_PER_FRAME],
-               *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE];
+               *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE],
+               *chunk = values[ZT_OPTION_CHUNK], *rate = values[ZT_OPTION_RATE];
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
     options->manifest = values[ZT_OPTION_MANIFEST];
     options->frame_list = values[ZT_OPTION_FRAME];
+    options->overwrites = values[ZT_OPTION_OVERWRITE] != NULL;
+    options->replays = values[ZT_OPTION_PIXEL] != NULL;
+    options->rate = (zt_rate){24, 1};
     options->filters = values[ZT_OPTION_FILTERS] != NULL;
     options->sample = -1;
     return fit_together(values, report) &&
-           (!time || read_duration(&options->budget.film_s, ZT_OPTION_TIME, time, report)) &&
-           (!frame_time || read_duration(&options->budget.frame_s, ZT_OPTION_TIME_PER_FRAME,
-                                         frame_time, report)) &&
-           (!pixel || read_pixel(options, pixel, report)) &&
-           (!sample || read_sample(options, sample, report)) &&
+           (!time ||
+            zt_value_duration(&options->budget.film_s, ZT_OPTION_TIME, time, report)) &&
+           (!frame_time || zt_value_duration(&options->budget.frame_s, ZT_OPTION_TIME_PER_FRAME,
+                                             frame_time, report)) &&
+           (!pixel || zt_value_pixel(&options->column, &options->row, pixel, report)) &&
+           (!sample || zt_value_sample(&options->sample, sample, report)) &&
            (!frames || read_frames(options, frames, report)) &&
-           (!size || read_size(settings, size, report)) &&
-           (!precision || read_precision(settings, precision, report)) &&
+           (!chunk || zt_value_part(&options->part, &options->part_count, chunk, report)) &&
+           (!rate || zt_value_rate(&options->rate, rate, report)) &&
+           (!size || zt_value_size(settings, size, report)) &&
+           (!precision || zt_value_precision(settings, precision, report)) &&
            set_sampling(options, values, report) &&
-           (!threads ||
-            read_count(&settings->threads, ZT_OPTION_THREADS, threads, THREADS_MAX, report));
+           (!threads || zt_value_count(&settings->threads, ZT_OPTION_THREADS, threads,
+                                       THREADS_MAX, report));
 }
 
 static zt_request understand(zt_options *options, const arguments *sorted, zt_report *report) {
@@ -461,4 +346,20 @@ char *zt_options_target(const zt_options *options) {
         printed = asprintf(&target, "output/%.*s.mp4", length, name);
     }
     return printed < 0 ? NULL : target;
+}
+
+zt_status zt_options_frames(zt_frames *frames, const zt_options *options, const zt_film *film,
+                            zt_report *report) {
+    char range[64] = "0--1"; /* to the last one */
+    if (!options->all_frames)
+        snprintf(range, sizeof range, "%" PRId64 "-%" PRId64, options->first, options->last);
+    const char *text = options->frame_list ? options->frame_list : range;
+    zt_status status =
+        zt_frames_read(frames, text, film->frame_count, zt_report_listener(report));
+    if (status != ZT_OK || options->part_count == 0) return status;
+    zt_frames_part(frames, options->part, options->part_count);
+    if (frames->count == 0)
+        zt_report_say(report, ZT_WARNING, "chunk %" PRId64 "/%" PRId64 " has no frames",
+                      options->part, options->part_count);
+    return ZT_OK;
 }

@@ -28,6 +28,7 @@ typedef struct zt_options {
     zt_render_settings settings; /* zero where not given */
     zt_budget budget;            /* likewise */
     const char *manifest;        /* to go by, or NULL */
+    zt_rate rate;                /* of encode */
     bool replays;                /* a pixel, instead of an image */
     int column, row;             /* of it */
     int sample;                  /* of it; -1: all */
@@ -57,5 +58,11 @@ const char *zt_options_name(int *length, const zt_options *options);
 /* Where the images go: as told, or output/ and the description's name with an ending by the
  * command. Of the caller to free; NULL when out of memory. */
 char *zt_options_target(const zt_options *options);
+
+/* The frames that were asked for, in their order: the list, or first .. last, or all, and of
+ * these the part. It may be empty where there are more parts than frames, which is told.
+ * ZT_EARGUMENT after telling of frames that the film has not. The caller frees them. */
+zt_status zt_options_frames(zt_frames *frames, const zt_options *options, const zt_film *film,
+                            zt_report *report);
 
 #endif

@@ -61,3 +61,7 @@ zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener lis
     ZT_TRY(open_door(&door, listener));
     return door->read(image, path, listener);
 }
+
+zt_status zt_image_read(zt_image **image, const char *path, zt_listener listener) {
+    return zt_image_file_read(image, path, listener);
+}

@@ -59,7 +59,7 @@ static zt_status read_frame(int64_t *frame, reading *r) {
     if (*frame < 0) *frame += r->film_frame_count;
     if (*frame >= 0 && *frame < r->film_frame_count) return ZT_OK;
     zt_tell(r->listener, ZT_ERROR,
-            "frames %s: there is no frame %.*s; the film has 0 to %" PRId64, r->text,
+            "frames %s: there is no frame %.*s: the film has frames 0 to %" PRId64, r->text,
             (int)(r->at - begin), begin, r->film_frame_count - 1);
     return ZT_EARGUMENT;
 }

@@ -1,0 +1,165 @@
+/* Single values of options. */
+#include "cli/values.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARTS_MAX = 1000000 };
+static const int64_t frame_max = INT64_C(1) << 40;
+
+bool zt_value_digits(int64_t *number, const char **text, int64_t max) {
+    const char *c = *text;
+    for (*number = 0; *c >= '0' && *c <= '9'; c++) {
+        *number = *number * 10 + (*c - '0');
+        if (*number > max) return false;
+    }
+    bool some = c > *text;
+    *text = c;
+    return some;
+}
+
+bool zt_value_count(int *count, zt_option option, const char *text, int max,
+                    zt_report *report) {
+    const char *rest = text;
+    int64_t number = 0;
+    bool good = zt_value_digits(&number, &rest, max) && !*rest && number > 0;
+    if (!good)
+        zt_report_say(report, ZT_ERROR, "--%s %s: must be a number from 1 to %d",
+                      zt_options_known[option].name, text, max);
+    *count = (int)number;
+    return good;
+}
+
+bool zt_value_size(zt_render_settings *settings, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t width = 0, height = 0;
+    bool good = zt_value_digits(&width, &rest, ZT_IMAGE_SIDE_MAX) && *rest++ == 'x' &&
+                zt_value_digits(&height, &rest, ZT_IMAGE_SIDE_MAX) && !*rest && width > 0 &&
+                height > 0;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--size %s: must be width and height, such as 640x360, each from 1 to %d",
+                      text, ZT_IMAGE_SIDE_MAX);
+    settings->width = (int)width;
+    settings->height = (int)height;
+    return good;
+}
+
+bool zt_value_precision(zt_render_settings *settings, const char *text, zt_report *report) {
+    static const char *const names[] = {[ZT_PRECISION_AUTO] = "auto",
+                                        [ZT_PRECISION_SINGLE] = "single",
+                                        [ZT_PRECISION_DOUBLE] = "double"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        settings->precision = (zt_precision)i;
+        return true;
+    }
+    zt_report_say(report, ZT_ERROR, "--precision %s: must be single, double or auto", text);
+    return false;
+}
+
+bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_report *report) {
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+    size_t length = strspn(text, "0123456789.");
+    char *end;
+    double number = strtod(text, &end);
+    const char *unit = text + length + strspn(text + length, " ");
+    for (int i = 0; i < 4 && length > 0 && end == text + length; i++)
+        if (strcmp(unit, units[i].name) == 0) *seconds = number * units[i].seconds;
+    if (*seconds > 0 && *seconds < 1e10) return true;
+    zt_report_say(report, ZT_ERROR,
+                  "--%s %s: must be a time, such as 500 ms, 2 s, 20 min or 8 h",
+                  zt_options_known[option].name, text);
+    return false;
+}
+
+bool zt_value_pixel(int *column, int *row, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t x = 0, y = 0;
+    bool good = zt_value_digits(&x, &rest, ZT_IMAGE_SIDE_MAX - 1) && *rest++ == ',' &&
+                zt_value_digits(&y, &rest, ZT_IMAGE_SIDE_MAX - 1) && !*rest;
+    if (!good)
+        zt_report_say(
+            report, ZT_ERROR,
+            "--pixel %s: must be column and row, counted from 0 at the top left, such "
+            "as 200,120",
+            text);
+    *column = (int)x;
+    *row = (int)y;
+    return good;
+}
+
+bool zt_value_sample(int *sample, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t number = 0;
+    bool good = zt_value_digits(&number, &rest, ZT_SAMPLES_MAX - 1) && !*rest;
+    if (!good)
+        zt_report_say(report, ZT_ERROR, "--sample %s: must be a number from 0 to %d", text,
+                      ZT_SAMPLES_MAX - 1);
+    *sample = (int)number;
+    return good;
+}
+
+bool zt_value_range(int64_t *first, int64_t *last, const char *text) {
+    const char *rest = text;
+    bool good = zt_value_digits(first, &rest, frame_max);
+    *last = *first;
+    if (good && *rest == '-') {
+        rest++;
+        good = zt_value_digits(last, &rest, frame_max);
+    }
+    return good && !*rest && *first <= *last;
+}
+
+bool zt_value_part(int64_t *part, int64_t *count, const char *text, zt_report *report) {
+    const char *rest = text;
+    bool good = zt_value_digits(part, &rest, PARTS_MAX) && *rest++ == '/' &&
+                zt_value_digits(count, &rest, PARTS_MAX) && !*rest && *part >= 1 &&
+                *part <= *count;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--chunk %s: must be a part and how many there are, such as 3/8; the "
+                      "first is 1",
+                      text);
+    return good;
+}
+
+bool zt_value_rate(zt_rate *rate, const char *text, zt_report *report) {
+    const char *rest = text;
+    int64_t num = 0, den = 1;
+    bool good = zt_value_digits(&num, &rest, INT32_MAX);
+    if (good && *rest == '/') {
+        rest++;
+        good = zt_value_digits(&den, &rest, INT32_MAX);
+    }
+    good = good && !*rest && num > 0 && den > 0;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--rate %s: must be frames a second, such as 24 or 30000/1001", text);
+    *rate = (zt_rate){(int32_t)num, (int32_t)den};
+    return good;
+}
+
+bool zt_value_samples(int64_t *min, int64_t *max, const char *text, const char *error,
+                      zt_report *report) {
+    const char *rest = text;
+    bool good = zt_value_digits(max, &rest, ZT_SAMPLES_MAX) && *max > 0;
+    *min = 0;
+    if (good && *rest == '-') {
+        *min = *max;
+        rest++;
+        good = *min > 0 && zt_value_digits(max, &rest, ZT_SAMPLES_MAX) && *min <= *max;
+    }
+    good = good && !*rest;
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--samples %s: must be a number from 1 to %d, or a range, such as 4-64",
+                      text, ZT_SAMPLES_MAX);
+    else if (*min && !error)
+        zt_report_say(report, ZT_ERROR, "--samples %s needs --error, such as --error=0.002",
+                      text);
+    return good && (!*min || error);
+}
