@@ -330,16 +330,17 @@ static void see_moving(zt_rays *rays, const zt_lens *lens, const float *x, const
 void zt_lens_rays(zt_rays *rays, const zt_lens *lens, const float *x, const float *y,
                   const float *u, const float *v, int count) {
     points opening;
+    bool opens = lens->opens && u;
     rays->count = count;
-    if (lens->opens && lens->blades)
+    if (opens && lens->blades)
         pass_blades(&opening, lens, u, v, count);
-    else if (lens->opens)
+    else if (opens)
         pass_disk(&opening, u, v, count);
     if (lens->moves)
-        see_moving(rays, lens, x, y, lens->opens ? &opening : NULL, count);
+        see_moving(rays, lens, x, y, opens ? &opening : NULL, count);
     else if (lens->kind == ZT_LENS_EQUIRECTANGULAR)
         see_around_still(rays, lens, x, y, count);
-    else if (lens->opens)
+    else if (opens)
         see_open_still(rays, lens, x, y, &opening, count);
     else if (lens->kind == ZT_LENS_PERSPECTIVE)
         see_plainly(rays, lens, x, y, count);

@@ -25,7 +25,7 @@ bool zt_lens_moves(const zt_lens *lens);
 /* Makes the batch's rays the ones through the places (x[i], y[i]) of the picture, in pixels
  * from its top left corner, `count` of them; at their times, which are read where the lens
  * moves; and through the point of its opening that (u[i], v[i]) of the unit square stand for,
- * read where it has one. */
+ * read where it has one; both NULL: through its middle. */
 void zt_lens_rays(zt_rays *rays, const zt_lens *lens, const float *x, const float *y,
                   const float *u, const float *v, int count);
 

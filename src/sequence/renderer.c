@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/diag.h"
 #include "keyframe/animation.h"
+#include "render/guides.h"
 #include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
@@ -115,6 +116,7 @@ zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();
     ZT_TRY(zt_render(image, &count, &t.job, r->work, r->pool));
+    ZT_TRY(zt_guides_render(image, &t.job, &t.exposure, r->work, r->pool));
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = count.left_out;
     r->cost.rays = count.rays;
