@@ -166,6 +166,87 @@ static const char *line_of(char line[256], const char *text, int n) {
     return line;
 }
 
+/* Float images, encoded, are the movie that rendering itself writes, byte for byte; from any
+ * number on, whatever else the directory holds. */
+static void encode(void **state) {
+    (void)state;
+    zoetrope_succeeds("render film.yaml -o film.mp4");
+    zoetrope_succeeds("render film.yaml -o shots/film.####.exr --format-option bits=float");
+    write_text("shots/film.5.exr", "too few digits");
+    write_text("shots/film.00005.exr", "too many zeros");
+    write_text("shots/film.0009.exr.part", "unfinished");
+    write_text("shots/afilm.0009.exr", "another name");
+    const char *patterns[] = {"####", "@@@@", "%04d"};
+    for (int i = 0; i < 3; i++) {
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "encode shots/film.%s.exr --rate 6 -o again.mp4",
+                 patterns[i]);
+        run *r = zoetrope(arguments);
+        assert_int_equal(r->code, 0);
+        assert_contains(r->err, "again.mp4: 6 frames");
+        assert_null(strstr(r->err, "missing"));
+        assert_true(same_files("film.mp4", "again.mp4"));
+    }
+    zoetrope_succeeds("encode shots/film.####.exr --rate 30000/1001 -o ntsc.mp4");
+    assert_false(same_files("film.mp4", "ntsc.mp4"));
+
+    assert_int_equal(rename("shots/film.0004.exr", "shots/film.12345.exr"), 0);
+    assert_int_equal(rename("shots/film.0005.exr", "shots/film.12346.exr"), 0);
+    assert_int_equal(unlink("shots/film.0001.exr"), 0);
+    run *r = zoetrope("encode shots/film.####.exr -o gaps.hash");
+    assert_int_equal(r->code, 0);
+    assert_contains(r->err, "number 1 is missing");
+    assert_contains(r->err, "numbers 4 to 12344 are missing");
+    char text[TEXT_MAX], line[256];
+    read_text(text, "gaps.hash");
+    assert_contains(line_of(line, text, 4), "12346");
+    assert_string_equal(line_of(line, text, 5), "");
+}
+
+/* Images for a display go as they are: numbers that are developed once more would differ. */
+static void encode_display(void **state) {
+    (void)state;
+    zoetrope_succeeds("render film.yaml -o film.####.png");
+    zoetrope_succeeds("encode film.####.png -o again.####.png");
+    assert_true(same_files("film.0003.png", "again.0003.png"));
+}
+
+/* What cannot be encoded is told, and leaves nothing behind. */
+static void encode_refusals(void **state) {
+    (void)state;
+    const struct {
+        const char *arguments, *told;
+        int code;
+    } cases[] = {
+        {"encode film.####.exr", "encode needs --output", 2},
+        {"encode film.exr -o film.mp4", "must have the place of one number", 2},
+        {"encode film.##.##.exr -o film.mp4", "must have the place of one number", 2},
+        {"encode film.%04x.exr -o film.mp4", "must have the place of one number", 2},
+        {"encode film.####.exr -o film.mp4", "there are no files film.####.exr", 3},
+        {"encode none/film.####.exr -o film.mp4", "cannot read none/", 3},
+        {"encode bad.####.exr -o film.mp4", "cannot read bad.0001.exr", 3},
+        {"encode film.####.exr -o film.mp4 --rate 0", "--rate 0: must be", 2},
+        {"encode film.####.exr -o film.mp4 --rate 30000/", "--rate 30000/: must be", 2},
+        {"encode film.####.exr -o film.mp4 --rate 24x", "--rate 24x: must be", 2},
+        {"encode film.####.exr -o film.mp4 --size 4x4", "encode takes no --size", 2},
+        {"encode film.####.exr -o film.mp4 --set a=1", "encode takes no --set", 2},
+        {"render film.yaml --rate 24", "render takes no --rate", 2},
+    };
+    write_text("bad.0001.exr", "not an image");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        run *r = zoetrope(cases[i].arguments);
+        if (r->code != cases[i].code)
+            fail_msg("%s ended with %d: %s", cases[i].arguments, r->code, r->err);
+        assert_contains(r->err, cases[i].told);
+        assert_int_equal(access("film.mp4", F_OK), -1);
+    }
+    zoetrope_succeeds("render film.yaml --frames 0 -o film.####.png");
+    zoetrope_succeeds("render film.yaml --frames 1 --size 32x18 -o film.####.png");
+    run *r = zoetrope("encode film.####.png -o film.hash");
+    assert_int_equal(r->code, 3);
+    assert_contains(r->err, "image 1 has 32 x 18 pixels, those before 64 x 36");
+}
+
 /* Checksums show that --frames chooses frames without changing them, that --threads changes
  * nothing, that --size and --samples do, and that preview is a quarter of the size. */
 static void settings(void **state) {
@@ -260,7 +341,8 @@ static void default_targets(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_DIRECTORY(help_and_version), IN_DIRECTORY(misuse),          IN_DIRECTORY(mistakes),
-        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),           IN_DIRECTORY(settings),
+        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),           IN_DIRECTORY(encode),
+        IN_DIRECTORY(encode_display),   IN_DIRECTORY(encode_refusals), IN_DIRECTORY(settings),
         IN_DIRECTORY(precision),        IN_DIRECTORY(default_targets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -54,6 +54,10 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                            ANYWHERE | BIT(OUTPUT) | BIT(FRAME) | BIT(SIZE) | BIT(SAMPLES) |
                                BIT(FILTERS) | BIT(TIME_PER_FRAME) | BIT(THREADS) |
                                BIT(PRECISION)},
+    [ZT_COMMAND_ENCODE] = {"encode", "FRAMES", 1, 0,
+                           "Images that are there, frames.####.exr, become a movie: -o TARGET",
+                           NULL, NULL,
+                           (ANYWHERE & ~BIT(SET)) | MOVIE | BIT(OUTPUT) | BIT(RATE)},
 };
 
 const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {

@@ -15,6 +15,7 @@ typedef enum zt_command {
     ZT_COMMAND_EXPLAIN,
     ZT_COMMAND_CURVES,
     ZT_COMMAND_REPORT,
+    ZT_COMMAND_ENCODE,
     ZT_COMMAND_COUNT /* none of them */
 } zt_command;
 

@@ -12,6 +12,7 @@
 #include <zoetrope/zoetrope.h>
 
 #include "cli/curves.h"
+#include "cli/encode.h"
 #include "cli/errors.h"
 #include "cli/explain.h"
 #include "cli/options.h"
@@ -274,6 +275,10 @@ int main(int argc, char **argv) {
         break;
     }
     report.quiet = options.quiet;
+    if (options.command == ZT_COMMAND_ENCODE) {
+        listen_for_interrupts();
+        return exit_code(zt_encode(&options, stopped, &report), &report);
+    }
     zt_animation *animation = NULL;
     zt_manifest *manifest = NULL;
     zt_status status = read_manifest(&manifest, &options, &report);

@@ -178,6 +178,10 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         return false;
     }
     options->file = sorted->words[1];
+    if (options->command == ZT_COMMAND_ENCODE && !options->target) {
+        zt_report_say(report, ZT_ERROR, "encode needs --output, such as --output=film.mp4");
+        return false;
+    }
     if (options->command == ZT_COMMAND_FRAME)
         return read_frame(options, sorted->words[2], report);
     if (options->command == ZT_COMMAND_EXPLAIN && sorted->words[2] && !options->all_frames) {
