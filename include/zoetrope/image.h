@@ -18,7 +18,7 @@ typedef enum zt_view {
     ZT_VIEW_RAW,    /* the numbers as they are, cut to 0..1 */
     ZT_VIEW_SRGB,   /* the sRGB transfer function, IEC 61966-2-1 */
     ZT_VIEW_REC709, /* the transfer function of cameras, ITU-R BT.709-6 */
-    ZT_VIEW_FILMIC, /* a tone curve, under which only 11.2 is white, then the sRGB function */
+    ZT_VIEW_FILMIC, /* a tone curve that reaches white at 5.6, then the sRGB function */
     ZT_VIEW_COUNT
 } zt_view;
 

@@ -44,18 +44,21 @@ static zt_status make_frame(AVFrame **frame, int width, int height, enum AVPixel
 }
 
 /* What the numbers mean, for decoders. Y'CbCr: BT.709 primaries and matrix in 16..235 (240),
- * chroma sited left. The transfer tag is BT.709's in both views, although the sRGB view's
- * numbers are sRGB's (tag 13): nearly all players show the numbers of a 709 film as they are,
- * which on an sRGB display is right, while 13 is so rare in films that some programs take it
- * for unknown. The few that take 709 at its word show the shadows a little lighter, as of all
- * films made on such a display.
+ * chroma sited left. The transfer tag is BT.709's in all views, although only the view of
+ * that name has its numbers and most have sRGB's (tag 13): nearly all players show the numbers
+ * of a 709 film as they are, which on an sRGB display is right, while 13 is so rare in films
+ * that some programs take it for unknown. The few that take 709 at its word show the shadows a
+ * little lighter, as of all films made on such a display.
  *
  * R'G'B' is tagged as what it is: those who read APNG take 709 at its word. */
 static void tag_frame(const zt_video_pixels *p, AVFrame *frame) {
     frame->color_primaries = AVCOL_PRI_BT709;
-    frame->color_trc = !p->is_rgb                ? AVCOL_TRC_BT709
-                       : p->view == ZT_VIEW_SRGB ? AVCOL_TRC_IEC61966_2_1
-                                                 : AVCOL_TRC_UNSPECIFIED;
+    static const enum AVColorTransferCharacteristic transfers[ZT_VIEW_COUNT] = {
+        [ZT_VIEW_RAW] = AVCOL_TRC_UNSPECIFIED,
+        [ZT_VIEW_SRGB] = AVCOL_TRC_IEC61966_2_1,
+        [ZT_VIEW_REC709] = AVCOL_TRC_BT709,
+        [ZT_VIEW_FILMIC] = AVCOL_TRC_IEC61966_2_1};
+    frame->color_trc = p->is_rgb ? transfers[p->view] : AVCOL_TRC_BT709;
     frame->colorspace = p->is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
     frame->color_range = p->is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     if (!p->is_rgb) frame->chroma_location = AVCHROMA_LOC_LEFT;

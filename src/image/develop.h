@@ -17,7 +17,8 @@ void zt_develop_rgb16(uint16_t *values, size_t stride, const zt_image *image, zt
                       int first, int last);
 
 /* One value through the view to 0..1, in double: the definition that the above is held to. What
- * lies outside of 0..1 is cut; what is no number becomes 0. */
+ * lies outside of 0 .. the view's white (1; 5.6 of filmic) is cut; what is no number becomes 0.
+ */
 double zt_develop_value(double linear, zt_view view);
 
 /* The inverse for the sRGB view: a display value of 0..1 to linear light. */
