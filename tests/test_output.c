@@ -55,8 +55,9 @@ static void assert_frame(const char *path, int frame) {
     assert_true(same_files(path, "expected"));
 }
 
-/* A # is a digit, %04d four of them, and a number that needs more gets more: no two frames
- * share a file. Directories are made; those that look like patterns are not taken for one. */
+/* A # or @ is a digit, %04d four of them, a minus is none, and a number that needs more gets
+ * more: no two frames share a file. Directories are made; those that look like patterns are not
+ * taken for one. */
 static void patterns(void **state) {
     (void)state;
     const int64_t frames[] = {-3, 0, 7, 42, 9999, 10000, 123456789012};
@@ -64,18 +65,21 @@ static void patterns(void **state) {
         const char *target, *names[7];
     } cases[] = {
         {"p1/a.####.png",
-         {"a.-003.png", "a.0000.png", "a.0007.png", "a.0042.png", "a.9999.png", "a.10000.png",
+         {"a.-0003.png", "a.0000.png", "a.0007.png", "a.0042.png", "a.9999.png", "a.10000.png",
           "a.123456789012.png"}},
         {"p2/deep/er/%03d.exr",
-         {"-03.exr", "000.exr", "007.exr", "042.exr", "9999.exr", "10000.exr",
+         {"-003.exr", "000.exr", "007.exr", "042.exr", "9999.exr", "10000.exr",
           "123456789012.exr"}},
         {"p3#%s%d##/b%dc.TIF",
          {"b-3c.TIF", "b0c.TIF", "b7c.TIF", "b42c.TIF", "b9999c.TIF", "b10000c.TIF",
           "b123456789012c.TIF"}},
         {"./p4//#.jpg",
          {"-3.jpg", "0.jpg", "7.jpg", "42.jpg", "9999.jpg", "10000.jpg", "123456789012.jpg"}},
+        {"p5@@/a@@@.png",
+         {"a-003.png", "a000.png", "a007.png", "a042.png", "a9999.png", "a10000.png",
+          "a123456789012.png"}},
     };
-    for (int c = 0; c < 4; c++) {
+    for (int c = 0; c < 5; c++) {
         write_all(cases[c].target, frames, 7);
         int directory_length = (int)(strrchr(cases[c].target, '/') - cases[c].target);
         for (int i = 0; i < 7; i++) {
@@ -111,6 +115,9 @@ static void hostile_patterns(void **state) {
         "h/##%d.png",
         "h/%d##.png",
         "h/a#b#.png",
+        "h/#@.png",
+        "h/@@%d.png",
+        "h/@@@@@@@@@@@@@@@@@@@@@.png",
         "h/%04d.%s.png",
         "h/%099999999999d.png",
         "h/%0999d.png",
