@@ -669,17 +669,43 @@ static void told_when_closed(void **state) {
     zt_image_free(&image);
 }
 
+/* R'G'B' says which transfer function its numbers have; each film names its view in words. */
+static void views_are_tagged(void **state) {
+    (void)state;
+    const struct {
+        const char *name;
+        enum AVColorTransferCharacteristic transfer;
+    } views[] = {{"view raw", AVCOL_TRC_UNSPECIFIED},
+                 {"view srgb", AVCOL_TRC_IEC61966_2_1},
+                 {"view rec709", AVCOL_TRC_BT709},
+                 {"view filmic", AVCOL_TRC_IEC61966_2_1}};
+    const zt_output_option lossless[] = {
+        {"codec", "ffv1"}, {"pixel-format", "bgr0"}, {NULL, NULL}};
+    for (int view = 0; view < ZT_VIEW_COUNT; view++) {
+        zt_output_format seen = format;
+        seen.view = (zt_view)view;
+        zt_output *output = open_movie_by("view.mkv", &seen, lossless);
+        zt_image *image = picture(WIDTH, HEIGHT, 1);
+        assert_int_equal(zt_output_write(output, image, 0), ZT_OK);
+        zt_image_free(&image);
+        close_movie(&output);
+        film m = film_open("view.mkv");
+        assert_int_equal(m.stream->codecpar->color_trc, views[view].transfer);
+        const AVDictionaryEntry *told =
+            av_dict_get(m.container->metadata, "description", NULL, 0);
+        assert_non_null(told);
+        assert_non_null(strstr(told->value, views[view].name));
+        film_close(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_ways),
-        cmocka_unit_test(same_bits),
-        cmocka_unit_test(refusals),
-        cmocka_unit_test(no_room),
-        cmocka_unit_test(options_count),
-        cmocka_unit_test(metadata),
-        cmocka_unit_test(sound),
-        cmocka_unit_test(check_finds),
-        cmocka_unit_test(told_when_closed),
+        cmocka_unit_test(all_ways),    cmocka_unit_test(views_are_tagged),
+        cmocka_unit_test(same_bits),   cmocka_unit_test(refusals),
+        cmocka_unit_test(no_room),     cmocka_unit_test(options_count),
+        cmocka_unit_test(metadata),    cmocka_unit_test(sound),
+        cmocka_unit_test(check_finds), cmocka_unit_test(told_when_closed),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
