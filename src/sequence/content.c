@@ -10,7 +10,7 @@ enum { NUMBERS_MAX = 512 };
 
 /* Numbers that are hashed together, and what those before them came to. */
 typedef struct stream {
-    uint64_t key;
+    uint64_t key, other; /* two words that are made in different orders */
     int count;
     double numbers[NUMBERS_MAX];
 } stream;
@@ -18,6 +18,7 @@ typedef struct stream {
 static void flush(stream *s) {
     zt_hash hash = zt_hash_bytes(s->numbers, (size_t)s->count * sizeof *s->numbers);
     s->key = zt_random_key(zt_random_key(s->key, hash.high), hash.low);
+    s->other = zt_random_key(zt_random_key(s->other, hash.low), hash.high);
     s->count = 0;
 }
 
@@ -146,6 +147,33 @@ static void put_scene(stream *s, const zt_scene *scene, const zt_scene *first) {
             put_light(s, &scene->lights[i], i);
 }
 
+/* All of its moments. */
+static void put_exposure(stream *s, const zt_exposure *exposure) {
+    const zt_scene *moments = exposure->moments;
+    const int32_t last = exposure->moment_count - 1;
+    for (int32_t i = 0; i <= last; i++) {
+        if (last > 0) {
+            put(s, exposure->times[i]);
+            put(s, i < last && exposure->steps[i]);
+        }
+        put_scene(s, &moments[i], moments);
+    }
+}
+
+zt_hash zt_shutter_content(const zt_exposure *exposure) {
+    const zt_scene *first = exposure->moments;
+    stream s;
+    s.key = s.other = 0;
+    s.count = 0;
+    put(&s, exposure->moment_count);
+    put(&s, first->object_count);
+    put(&s, first->material_count);
+    put(&s, first->light_count);
+    put_exposure(&s, exposure);
+    flush(&s);
+    return (zt_hash){s.key, s.other};
+}
+
 void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure *exposure,
                      const zt_sampling *sampling) {
     const uint64_t seed = zt_random_key(0, sampling->seed);
@@ -154,19 +182,13 @@ void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure
     *place_key = *frame_key = seed;
     if (sampling->seed_fixed) return;
     stream s;
-    s.key = seed;
+    s.key = s.other = seed;
     s.count = 0;
     put_camera(&s, &moments[0].camera);
     put_camera(&s, &moments[last].camera);
     flush(&s);
     *place_key = s.key;
-    for (int32_t i = 0; i <= last; i++) {
-        if (last > 0) {
-            put(&s, exposure->times[i]);
-            put(&s, i < last && exposure->steps[i]);
-        }
-        put_scene(&s, &moments[i], moments);
-    }
+    put_exposure(&s, exposure);
     flush(&s);
     *frame_key = s.key;
 }

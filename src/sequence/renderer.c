@@ -40,6 +40,7 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     r->animation = animation;
     r->listener = listener;
     r->precision = settings->precision;
+    r->aovs = film->aovs | settings->aovs;
     r->sampling = film->sampling;
     if (settings->samples) {
         r->sampling.min = r->sampling.max = settings->samples;

@@ -3,6 +3,8 @@
 #ifndef ZT_SEQUENCE_SHUTTER_H
 #define ZT_SEQUENCE_SHUTTER_H
 
+#include <zoetrope/hash.h>
+
 #include "base/arena.h"
 #include "keyframe/animation.h"
 #include "scene/exposure.h"
@@ -37,5 +39,8 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
  * from frame to frame, but frames in which nothing changes come out identical. */
 void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure *exposure,
                      const zt_sampling *sampling);
+
+/* A hash of all that an exposure holds, but for what is in its meshes. */
+zt_hash zt_shutter_content(const zt_exposure *exposure);
 
 #endif

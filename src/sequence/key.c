@@ -1,0 +1,71 @@
+/* What decides a frame's pixels, as one hash. */
+#include "sequence/key.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/diag.h"
+#include "base/hash.h"
+#include "keyframe/animation.h"
+#include "sequence/pacing.h"
+#include "sequence/shutter.h"
+
+/* Becomes another one whenever the same scene comes out with other pixels. */
+static const char arithmetic[] = "zoetrope 1";
+
+static zt_hash hash_of(const void *bytes, size_t size) {
+    return bytes && size ? zt_hash_bytes(bytes, size) : (zt_hash){0};
+}
+
+/* Numbers of which it consists, side by side, without bytes between them. */
+static zt_hash mesh_hash(const zt_mesh *m) {
+    const size_t points = (size_t)m->vertex_count * 3, corners = (size_t)m->triangle_count * 3;
+    const double numbers[] = {m->origin.x, m->origin.y, m->origin.z, m->vertex_count,
+                              m->triangle_count};
+    const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
+                             hash_of(m->positions, points * sizeof *m->positions),
+                             hash_of(m->triangles, corners * sizeof *m->triangles),
+                             hash_of(m->normals, points * sizeof *m->normals),
+                             hash_of(m->colors, points * sizeof *m->colors)};
+    return zt_hash_bytes(parts, sizeof parts);
+}
+
+/* Of all meshes, once: they are the film's, and never change. */
+static zt_status find_held(zt_renderer *r) {
+    if (r->held.high || r->held.low) return ZT_OK;
+    const zt_scene *rest = &r->animation->rest;
+    zt_hash *hashes = calloc((size_t)rest->mesh_count + 1, sizeof *hashes);
+    if (!hashes) return ZT_EMEMORY;
+    for (int32_t i = 0; i < rest->mesh_count; i++) hashes[i] = mesh_hash(&rest->meshes[i]);
+    r->held = zt_hash_bytes(hashes, ((size_t)rest->mesh_count + 1) * sizeof *hashes);
+    free(hashes);
+    return ZT_OK;
+}
+
+zt_status zt_renderer_key_of(zt_hash *key, zt_renderer *r, int64_t frame,
+                             const zt_sampling *s) {
+    zt_exposure exposure;
+    zt_division division;
+    ZT_TRY(find_held(r));
+    zt_arena_reset(&r->frame);
+    ZT_TRY(zt_shutter_expose(&exposure, &division, r->animation, frame, r->format.height,
+                             &r->frame, r->listener));
+    const double numbers[] = {r->format.width, r->format.height,
+                              r->precision,    r->aovs,
+                              s->min,          s->max,
+                              s->error,        s->mean_max,
+                              s->edges,        s->filter,
+                              s->filter_width, s->seed,
+                              s->seed_fixed,   r->animation->film.transparent};
+    const zt_hash parts[] = {zt_hash_bytes(arithmetic, sizeof arithmetic),
+                             zt_hash_bytes(numbers, sizeof numbers), r->held,
+                             zt_shutter_content(&exposure)};
+    *key = zt_hash_bytes(parts, sizeof parts);
+    return ZT_OK;
+}
+
+zt_status zt_renderer_key(zt_hash *key, zt_renderer *r, int64_t frame) {
+    zt_sampling sampling;
+    ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
+    return zt_renderer_key_of(key, r, frame, &sampling);
+}
