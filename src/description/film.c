@@ -193,7 +193,8 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
     static const char *const names[] = {"size",    "rate",        "duration", "view",
                                         "shading", "reflections", "samples",  "filter",
                                         "quality", "seed",        "shutter",  "audio"};
-    static const char *const views[] = {[ZT_VIEW_RAW] = "raw", [ZT_VIEW_SRGB] = "srgb"};
+    const char *views[ZT_VIEW_COUNT];
+    for (int v = 0; v < ZT_VIEW_COUNT; v++) views[v] = zt_view_name((zt_view)v);
     static const char *const shadings[] = {"classic"};
     zt_mistakes *mistakes = &reading->mistakes;
     zt_film *film = &reading->animation->film;
