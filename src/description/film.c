@@ -1,6 +1,8 @@
 /* What a description says of the film as a whole: its pictures, and when they are taken. */
 #include "description/film.h"
 
+#include <zoetrope/aov.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -175,6 +177,21 @@ static void read_sampling(zt_sampling *sampling, zt_mistakes *mistakes,
     if (seed) read_seed(sampling, mistakes, seed);
 }
 
+static void read_aov(unsigned *aovs, zt_mistakes *mistakes, const zt_node *node) {
+    unsigned found;
+    if (node->kind == ZT_NODE_TEXT && zt_aov_find(&found, node->text))
+        *aovs |= found;
+    else
+        zt_expected(mistakes, node, "aovs", zt_aov_names());
+}
+
+/* "aovs: [Z, N]", or one name alone. */
+static void read_aovs(unsigned *aovs, zt_mistakes *mistakes, const zt_node *node) {
+    if (node->kind != ZT_NODE_LIST) read_aov(aovs, mistakes, node);
+    for (int32_t i = 0; node->kind == ZT_NODE_LIST && i < node->count; i++)
+        read_aov(aovs, mistakes, node->items[i]);
+}
+
 /* Whether the file is one with sound is for the output to say. */
 static zt_status read_audio(zt_reading *reading, const zt_node *node, const char *directory) {
     const char *name = zt_read_text(&reading->mistakes, node, "audio");
@@ -190,9 +207,9 @@ static zt_status read_audio(zt_reading *reading, const zt_node *node, const char
 }
 
 zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *directory) {
-    static const char *const names[] = {"size",    "rate",        "duration", "view",
-                                        "shading", "reflections", "samples",  "filter",
-                                        "quality", "seed",        "shutter",  "audio"};
+    static const char *const names[] = {
+        "size",   "rate",    "duration", "view",    "shading", "reflections", "samples",
+        "filter", "quality", "seed",     "shutter", "audio",   "aovs"};
     const char *views[ZT_VIEW_COUNT];
     for (int v = 0; v < ZT_VIEW_COUNT; v++) views[v] = zt_view_name((zt_view)v);
     static const char *const shadings[] = {"classic"};
@@ -205,7 +222,8 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
                   *duration = zt_field_required(&fields, mistakes, "duration", &node->place),
                   *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
                   *reflections = zt_field(&fields, "reflections"),
-                  *shutter = zt_field(&fields, "shutter"), *audio = zt_field(&fields, "audio");
+                  *shutter = zt_field(&fields, "shutter"), *audio = zt_field(&fields, "audio"),
+                  *aovs = zt_field(&fields, "aovs");
     int choice;
     int64_t number;
     if (size) read_size(film, mistakes, size);
@@ -219,6 +237,7 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
         zt_read_integer(&number, mistakes, reflections, "reflections", 0, REFLECTIONS_MAX))
         reading->animation->rest.reflection_depth = (int32_t)number;
     if (shutter) read_shutter(&film->shutter, mistakes, shutter);
+    if (aovs) read_aovs(&film->aovs, mistakes, aovs);
     read_sampling(&film->sampling, mistakes, &fields);
     return audio ? read_audio(reading, audio, directory) : ZT_OK;
 }
