@@ -14,20 +14,23 @@ typedef struct zt_outway zt_outway;
 zt_status zt_outway_open(zt_outway **way, zt_output *output, int width, int height,
                          unsigned aovs, int thread_count);
 
-/* Lends an image to be filled, whose contents mean nothing; waits while too many are under way.
- * Fails with what failed since. The caller releases it, once, sent or not. */
+/* Lends an image to be filled, whose contents mean nothing; waits while too many are under way:
+ * thread_count + 2, those that the caller keeps counted. Fails with what failed since. The
+ * caller releases it, once, sent or not. */
 zt_status zt_outway_lend(zt_image **image, zt_outway *way);
 void zt_outway_release(zt_outway *way, zt_image *image);
 
-/* Sends an image that was lent; any number of times, each with what is to be said of it.
- * Nothing in it may change from then on. Fails with what failed since, for this image or for
- * one before. */
+/* Sends an image that was lent; any number of times, each with what is to be said of it, the
+ * frame's number among it. Nothing in it may change from then on. Waits, too. Fails with what
+ * failed since, for this image or for one before. */
 zt_status zt_outway_send(zt_outway *way, zt_image *image, const zt_image_info *info);
 
-/* How long, in all, lending had to wait for images to be written, seconds. */
+/* How long, in all, lending and sending had to wait for images to be written, seconds. For the
+ * thread that lends and sends. */
 double zt_outway_waited_s(const zt_outway *way);
 
-/* Waits for all that was sent, and returns the first failure of all. */
+/* Waits for all that was sent, and returns the first failure, in the order of sending: what was
+ * sent before that is written, what was sent after it is not. */
 zt_status zt_outway_close(zt_outway **way);
 
 #endif
