@@ -11,6 +11,7 @@
 #include "files.h"
 #include "image/develop.h"
 #include "image/file.h"
+#include <zoetrope/zoetrope.h>
 
 static zt_image *read_back(const char *path) {
     heard h;
@@ -304,6 +305,245 @@ static void huge_claims(void **state) {
     assert_unreadable("huge.png");
 }
 
+/* A picture that is covered by 1/4 to the left, not at all in one pixel, wholly elsewhere; its
+ * colours are multiplied by that. */
+static zt_image *covered_picture(void) {
+    zt_image *image = picture(8, 4, 0);
+    for (int i = 0; i < 8 * 4; i++) {
+        float alpha = i == 9 ? 0 : i % 8 < 4 ? 0.25f : 1;
+        for (int c = 0; c < 4; c++) image->pixels[4 * i + c] *= alpha;
+    }
+    return image;
+}
+
+/* Where something shows through, files have A; integers hold colours that are not multiplied by
+ * it, but in DPX, and floats those that are. */
+static void alpha_where_it_says_something(void **state) {
+    static const struct {
+        const char *path, *bits;
+        double (*expect)(double);
+        bool divided;
+        double within;
+    } files[] = {
+        {"alpha.png", "bits=8", srgb8, true, 1e-6},
+        {"alpha16.png", "bits=16", srgb16, true, 1e-6},
+        {"alpha.tif", "bits=16", srgb16, true, 1e-6},
+        {"alphaf.tif", "bits=float", as_it_is, false, 0},
+        {"alpha.exr", "bits=half", as_it_is, false, 0x1p-12},
+        {"alpha.dpx", "bits=16", srgb16, false, 1e-6},
+    };
+    (void)state;
+    zt_image *image = covered_picture();
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        const zt_wish options[] = {{"format-option", files[f].bits}, {NULL, NULL}};
+        write_wished(image, ZT_VIEW_SRGB, files[f].path, options);
+        zt_image *back = read_back(files[f].path);
+        double steps = strstr(files[f].bits, "=8") ? 255 : 65535;
+        bool integers = files[f].expect != as_it_is;
+        for (int i = 0; i < 4 * 8 * 4; i++) {
+            double value = (double)image->pixels[i], alpha = (double)image->pixels[i | 3];
+            if (i % 4 == 3)
+                value = integers ? floor(steps * alpha + 0.5) / steps : alpha;
+            else
+                value = files[f].expect(files[f].divided && alpha > 0 ? value / alpha : value);
+            double off = fabs((double)back->pixels[i] - value);
+            if (!(off <= files[f].within))
+                fail_msg("%s is off by %g at %d", files[f].path, off, i);
+        }
+        zt_image_free(&back);
+    }
+    write_picture(image, ZT_VIEW_SRGB, "alpha.webp");
+    zt_image *back = read_back("alpha.webp"); /* of which A is kept as it is */
+    for (int i = 3; i < 4 * 8 * 4; i += 4)
+        assert_true(fabs((double)(back->pixels[i] - image->pixels[i])) <= 0.5001 / 255);
+    zt_image_free(&back);
+
+    write_picture(image, ZT_VIEW_SRGB, "over.jpg"); /* no place for A: over black */
+    for (int i = 3; i < 4 * 8 * 4; i += 4) image->pixels[i] = 1;
+    write_picture(image, ZT_VIEW_SRGB, "opaque.jpg");
+    assert_true(same_files("over.jpg", "opaque.jpg"));
+    write_picture(image, ZT_VIEW_SRGB, "opaque.png");
+    size_t size;
+    char *bytes = file_bytes("opaque.png", &size);
+    assert_int_equal(bytes[25], 2); /* IHDR: R G B */
+    free(bytes);
+    bytes = file_bytes("alpha.png", &size);
+    assert_int_equal(bytes[25], 6); /* R G B A */
+    free(bytes);
+    zt_image_free(&image);
+}
+
+/* An attribute of an OpenEXR file by the format's own layout: name, 0, type, 0, size, value. */
+static const char *exr_attribute(const char *bytes, size_t size, const char *name,
+                                 const char *type, int32_t *length) {
+    char head[128];
+    size_t used = strlen(name) + 1 + strlen(type) + 1;
+    memcpy(head, name, strlen(name) + 1);
+    memcpy(head + strlen(name) + 1, type, strlen(type) + 1);
+    const char *found = memmem(bytes, size, head, used);
+    if (!found) return NULL;
+    memcpy(length, found + used, 4);
+    return found + used + 4;
+}
+
+static void assert_exr_text(const char *bytes, size_t size, const char *name,
+                            const char *expected) {
+    int32_t length;
+    const char *text = exr_attribute(bytes, size, name, "string", &length);
+    if (!text || (size_t)length != strlen(expected) || memcmp(text, expected, strlen(expected)))
+        fail_msg("%s is %.*s", name, text ? length : 4, text ? text : "none");
+}
+
+/* The values of a channel that is stored without compression, a line a block, with its type;
+ * 1 is half, 2 is float. Channels come in the order of their names. */
+static const char *exr_line(const char *bytes, size_t size, const char *name, int width, int y,
+                            int height, int *type) {
+    int32_t length, kind;
+    const char *list = exr_attribute(bytes, size, "channels", "chlist", &length);
+    assert_non_null(list);
+    size_t before = 0, found = SIZE_MAX, line = 0;
+    for (; *list; list += strlen(list) + 1 + 16) {
+        memcpy(&kind, list + strlen(list) + 1, 4);
+        size_t channel = (size_t)width * (kind == 1 ? 2 : 4);
+        if (strcmp(list, name) == 0) {
+            found = before;
+            *type = kind;
+        }
+        before += channel;
+        line = before;
+    }
+    if (found == SIZE_MAX) return NULL;
+    return bytes + size - (line + 8) * (size_t)(height - y) + 8 + found;
+}
+
+static const zt_wish uncompressed[] = {
+    {"format-option", "compression=none"}, {"format-option", "bits=half"}, {NULL, NULL}};
+
+/* An OpenEXR file has the image's further channels, as floats by their names; others have not.
+ */
+static void exr_has_all_channels(void **state) {
+    static const char *const names[] = {"Z", "P.X", "id.object", "samples", "error"};
+    (void)state;
+    for (int alpha = 0; alpha < 2; alpha++) {
+        zt_image *image = alpha ? covered_picture() : picture(8, 4, 0);
+        write_picture(image, ZT_VIEW_SRGB, "plain.png");
+        for (int c = 0; c < 5; c++) {
+            assert_int_equal(zt_image_add_channel(image, names[c]), ZT_OK);
+            for (int i = 0; i < 8 * 4; i++)
+                image->channels[c].values[i] = 100000.25f * (float)(c + 1) + (float)i;
+        }
+        write_picture(image, ZT_VIEW_SRGB, "layers.png");
+        assert_true(same_files("plain.png", "layers.png"));
+        write_wished(image, ZT_VIEW_SRGB, "layers.exr", uncompressed);
+        size_t size;
+        char *bytes = file_bytes("layers.exr", &size);
+        for (int y = 0; y < 4; y++) {
+            int type = 0;
+            for (int c = 0; c < 5; c++) {
+                const char *line = exr_line(bytes, size, names[c], 8, y, 4, &type);
+                assert_non_null(line);
+                assert_int_equal(type, 2);
+                assert_memory_equal(line, image->channels[c].values + 8 * y, 8 * sizeof(float));
+            }
+            assert_non_null(exr_line(bytes, size, "R", 8, y, 4, &type));
+            assert_int_equal(type, 1);
+            assert_int_equal(exr_line(bytes, size, "A", 8, y, 4, &type) != NULL, alpha);
+        }
+        free(bytes);
+        zt_image *back = read_back("layers.exr"); /* colours first, and no Z taken for A */
+        for (int i = 0; i < 4 * 8 * 4; i++)
+            assert_true(fabs((double)(back->pixels[i] - image->pixels[i])) <= 0x1p-12);
+        zt_image_free(&back);
+        zt_image_free(&image);
+    }
+}
+
+static void know(zt_image *image) {
+    image->info = (zt_image_info){.known = true,
+                                  .frame = -5000000000,
+                                  .rate = {30000, 1001},
+                                  .key = {0x0123456789abcdef, 0xfedcba9876543210},
+                                  .render_s = 2.5,
+                                  .seed = UINT64_MAX,
+                                  .title = "Näher",
+                                  .description = "film.yaml",
+                                  .settings = "{\"samples\": 4}"};
+    for (int i = 0; i < 16; i++) image->info.world_to_camera[i] = i + 0.5;
+}
+
+/* What an image is of goes along, by the names that the format has for it. */
+static void files_tell_what_they_are_of(void **state) {
+    (void)state;
+    zt_image *image = picture(8, 4, 0);
+    size_t size;
+    write_picture(image, ZT_VIEW_SRGB, "unknown.exr");
+    char *bytes = file_bytes("unknown.exr", &size);
+    assert_null(memmem(bytes, size, "zoetrope", 8));
+    assert_null(memmem(bytes, size, "oftware", 7));
+    free(bytes);
+    know(image);
+    write_picture(image, ZT_VIEW_SRGB, "known.exr");
+    bytes = file_bytes("known.exr", &size);
+    assert_exr_text(bytes, size, "Software", "Zoetrope " ZT_VERSION);
+    assert_exr_text(bytes, size, "zoetrope:frame", "-5000000000");
+    assert_exr_text(bytes, size, "zoetrope:key", "0123456789abcdeffedcba9876543210");
+    assert_exr_text(bytes, size, "zoetrope:seed", "18446744073709551615");
+    assert_exr_text(bytes, size, "zoetrope:description", "film.yaml");
+    assert_exr_text(bytes, size, "zoetrope:settings", "{\"samples\": 4}");
+    int32_t length, rate[2];
+    float number, matrix[16];
+    const char *value = exr_attribute(bytes, size, "framesPerSecond", "rational", &length);
+    assert_true(value && length == 8);
+    memcpy(rate, value, 8);
+    assert_true(rate[0] == 30000 && rate[1] == 1001);
+    value = exr_attribute(bytes, size, "renderTime", "float", &length);
+    assert_non_null(value);
+    memcpy(&number, value, 4);
+    assert_true(number == 2.5f);
+    value = exr_attribute(bytes, size, "pixelAspectRatio", "float", &length);
+    assert_non_null(value);
+    memcpy(&number, value, 4);
+    assert_true(number == 1);
+    value = exr_attribute(bytes, size, "worldToCamera", "m44f", &length);
+    assert_true(value && length == 64);
+    memcpy(matrix, value, 64);
+    for (int i = 0; i < 16; i++) assert_true(matrix[i] == (float)i + 0.5f);
+    assert_null(exr_attribute(bytes, size, "worldToNDC", "m44f", &length)); /* all zeros */
+    free(bytes);
+    image->info.world_to_ndc[3] = 2;
+    write_picture(image, ZT_VIEW_SRGB, "ndc.exr");
+    bytes = file_bytes("ndc.exr", &size);
+    value = exr_attribute(bytes, size, "worldToNDC", "m44f", &length);
+    assert_non_null(value);
+    memcpy(matrix, value, 64);
+    assert_true(matrix[3] == 2 && matrix[12] == 0);
+    free(bytes);
+
+    static const char *const paths[] = {"known.png", "known.tif"};
+    for (int f = 0; f < 2; f++) {
+        write_picture(image, ZT_VIEW_SRGB, paths[f]);
+        bytes = file_bytes(paths[f], &size);
+        static const char *const words[] = {
+            "Software", "Zoetrope " ZT_VERSION,
+            "film.yaml; frame -5000000000; key 0123456789abcdeffedcba9876543210; seed "
+            "18446744073709551615; settings {\"samples\": 4}"};
+        for (int w = f; w < 3; w++) /* TIFF's tags have numbers, not names */
+            if (!memmem(bytes, size, words[w], strlen(words[w])))
+                fail_msg("%s: no %s", paths[f], words[w]);
+        free(bytes);
+    }
+    static const char *const others[] = {"o.jpg", "o.webp", "o.dpx", "o.hdr"};
+    for (int f = 0; f < 4; f++) { /* which stay as they are */
+        write_picture(image, ZT_VIEW_SRGB, others[f]);
+        assert_int_equal(rename(others[f], "known"), 0); /* DPX holds the name */
+        image->info.known = false;
+        write_picture(image, ZT_VIEW_SRGB, others[f]);
+        image->info.known = true;
+        assert_true(same_files(others[f], "known"));
+    }
+    zt_image_free(&image);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats_hold_the_picture),
@@ -315,6 +555,9 @@ int main(void) {
         cmocka_unit_test(full_disk),
         cmocka_unit_test(unreadable_files),
         cmocka_unit_test(huge_claims),
+        cmocka_unit_test(alpha_where_it_says_something),
+        cmocka_unit_test(exr_has_all_channels),
+        cmocka_unit_test(files_tell_what_they_are_of),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -6,6 +6,8 @@
 #include "image/file.h"
 
 #include <cfloat>
+#include <cinttypes>
+#include <cstdio>
 #include <memory>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +32,8 @@ const float half_max = 65504;
 /* As Exif writes it. Without it, the hour of writing goes into the file, and the same picture
  * is not the same file. */
 const char *const date_unknown = "    :  :     :  :  ";
+
+const char *const software = "Zoetrope 0.1.0";
 
 const OIIO::imagesize_t read_pixels_max = OIIO::imagesize_t(1) << 28;
 
@@ -84,6 +88,98 @@ void add_particulars(OIIO::ImageSpec &spec, const zt_image_wishes *w) {
         spec.attribute("DateTime", date_unknown);
 }
 
+/* Whether the image has an A that says something, and the format a place for it. */
+bool needs_alpha(const zt_image *image, const zt_image_wishes *w) {
+    size_t value_count = size_t(image->width) * size_t(image->height) * 4;
+    for (size_t i = 3; w->format->has_alpha && i < value_count; i += 4)
+        if (image->pixels[i] != 1) return true;
+    return false;
+}
+
+bool is_exr(const zt_image_wishes *w) { return strcmp(w->format->endings[0], ".exr") == 0; }
+
+/* Whether colours are stored as they are where a pixel is covered, not multiplied by A. Formats
+ * that say which of the two it is have it so for integers; DPX does not say, and shows the
+ * picture over black. */
+bool unassociated(const zt_image_wishes *w) {
+    return w->depth < ZT_DEPTH_HALF && strcmp(w->format->endings[0], ".dpx") != 0;
+}
+
+/* R G B, A where it says something, and in OpenEXR all further channels, as float. */
+void add_channels(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_wishes *w) {
+    if (needs_alpha(image, w)) {
+        spec.nchannels = 4;
+        spec.alpha_channel = 3;
+        spec.channelnames.push_back("A");
+        if (unassociated(w)) spec.attribute("oiio:UnassociatedAlpha", 1);
+    }
+    if (!is_exr(w) || image->channel_count == 0) return;
+    spec.channelformats.assign(size_t(spec.nchannels), spec.format);
+    for (int c = 0; c < image->channel_count; c++) {
+        spec.channelnames.push_back(image->channels[c].name);
+        spec.channelformats.push_back(OIIO::TypeDesc::FLOAT);
+    }
+    spec.nchannels += image->channel_count;
+}
+
+std::string hex_of(zt_hash hash) {
+    char text[33];
+    snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, hash.high, hash.low);
+    return text;
+}
+
+void add_matrix(OIIO::ImageSpec &spec, const char *name, const double *matrix) {
+    float values[16];
+    bool some = false;
+    for (int i = 0; i < 16; i++) {
+        values[i] = float(matrix[i]);
+        some |= matrix[i] != 0;
+    }
+    if (some) spec.attribute(name, OIIO::TypeMatrix, values);
+}
+
+void add_text(OIIO::ImageSpec &spec, const char *name, const char *text) {
+    if (text) spec.attribute(name, text);
+}
+
+/* As attributes of OpenEXR, by its standard names where there are such. Numbers that
+ * an attribute's 32 bits may not hold are texts. */
+void add_info_exr(OIIO::ImageSpec &spec, const zt_image_info &info) {
+    const int rate[2] = {info.rate.num, info.rate.den};
+    spec.attribute("framesPerSecond", OIIO::TypeRational, rate);
+    add_matrix(spec, "worldToCamera", info.world_to_camera);
+    add_matrix(spec, "worldToNDC", info.world_to_ndc);
+    spec.attribute("PixelAspectRatio", 1.0f);
+    spec.attribute("renderTime", float(info.render_s));
+    spec.attribute("zoetrope:frame", std::to_string(info.frame));
+    spec.attribute("zoetrope:key", hex_of(info.key));
+    spec.attribute("zoetrope:seed", std::to_string(info.seed));
+    add_text(spec, "zoetrope:title", info.title);
+    add_text(spec, "zoetrope:description", info.description);
+    add_text(spec, "zoetrope:settings", info.settings);
+}
+
+/* As one text, for formats that have but a comment. */
+void add_info_comment(OIIO::ImageSpec &spec, const zt_image_info &info) {
+    std::string text = info.title ? std::string(info.title) + "; " : "";
+    if (info.description) text += std::string(info.description) + "; ";
+    text += "frame " + std::to_string(info.frame) + "; key " + hex_of(info.key) + "; seed " +
+            std::to_string(info.seed);
+    if (info.settings) text += std::string("; settings ") + info.settings;
+    spec.attribute("ImageDescription", text);
+}
+
+void add_info(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_wishes *w) {
+    std::string format = w->format->endings[0];
+    bool comment = format == ".png" || format == ".tif";
+    if (!image->info.known || (!is_exr(w) && !comment)) return;
+    spec.attribute("Software", software);
+    if (comment)
+        add_info_comment(spec, image->info);
+    else
+        add_info_exr(spec, image->info);
+}
+
 OIIO::ImageSpec spec_for(const zt_image *image, const zt_image_wishes *w) {
     static const OIIO::TypeDesc::BASETYPE types[ZT_DEPTH_COUNT] = {
         OIIO::TypeDesc::UINT8,  OIIO::TypeDesc::UINT16, OIIO::TypeDesc::UINT16,
@@ -96,6 +192,8 @@ OIIO::ImageSpec spec_for(const zt_image *image, const zt_image_wishes *w) {
     spec.tile_width = spec.tile_height = w->tile;
     spec.tile_depth = w->tile ? 1 : 0;
     add_particulars(spec, w);
+    add_channels(spec, image, w);
+    add_info(spec, image, w);
     return spec;
 }
 
@@ -108,27 +206,96 @@ void round_bits(std::vector<uint16_t> &values, unsigned bits) {
     }
 }
 
-bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view) {
-    size_t row_count = size_t(image->height), row_values = size_t(image->width) * 3;
-    OIIO::TypeDesc type = output.spec().format;
-    if (type == OIIO::TypeDesc::UINT8) {
-        std::vector<uint8_t> pixels(row_count * row_values);
-        zt_develop_rgb8(pixels.data(), row_values, image, view, 0, image->height);
-        return output.write_image(type, pixels.data());
+/* Colours divided by A, where there is any. */
+std::vector<float> divided(const zt_image *image) {
+    size_t value_count = size_t(image->width) * size_t(image->height) * 4;
+    std::vector<float> pixels(image->pixels, image->pixels + value_count);
+    for (size_t i = 0; i < value_count; i += 4)
+        for (size_t c = 0; c < 3 && pixels[i + 3] > 0; c++) pixels[i + c] /= pixels[i + 3];
+    return pixels;
+}
+
+/* Puts A behind each three developed values. It is a share, which no view changes. */
+template <typename Value>
+std::vector<Value> with_alpha(const std::vector<Value> &colours, const zt_image *image,
+                              Value most) {
+    std::vector<Value> values(colours.size() / 3 * 4);
+    for (size_t i = 0; i < values.size(); i++) {
+        float alpha = image->pixels[i]; /* where i % 4 is 3 */
+        values[i] = i % 4 < 3      ? colours[i / 4 * 3 + i % 4]
+                    : !(alpha > 0) ? Value(0)
+                    : alpha >= 1   ? most
+                                   : Value(double(alpha) * most + 0.5);
     }
-    if (type == OIIO::TypeDesc::UINT16) {
-        std::vector<uint16_t> pixels(row_count * row_values);
-        zt_develop_rgb16(pixels.data(), row_values * sizeof(uint16_t), image, view, 0,
-                         image->height);
-        int bits = output.spec().get_int_attribute("oiio:BitsPerSample", 16);
-        if (bits < 16) round_bits(pixels, unsigned(bits));
-        return output.write_image(type, pixels.data());
+    return values;
+}
+
+bool write_integers(OIIO::ImageOutput &output, const zt_image *given, zt_view view) {
+    const OIIO::ImageSpec &spec = output.spec();
+    zt_image image = *given;
+    std::vector<float> pixels;
+    bool alpha = spec.nchannels == 4;
+    if (alpha && spec.get_int_attribute("oiio:UnassociatedAlpha")) {
+        pixels = divided(given);
+        image.pixels = pixels.data();
     }
-    float most = type == OIIO::TypeDesc::HALF ? half_max : FLT_MAX;
-    std::vector<float> pixels(row_count * row_values);
+    size_t row_values = size_t(image.width) * 3,
+           value_count = size_t(image.height) * row_values;
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        std::vector<uint8_t> values(value_count);
+        zt_develop_rgb8(values.data(), row_values, &image, view, 0, image.height);
+        if (alpha) values = with_alpha<uint8_t>(values, given, 255);
+        return output.write_image(spec.format, values.data());
+    }
+    std::vector<uint16_t> values(value_count);
+    zt_develop_rgb16(values.data(), row_values * sizeof(uint16_t), &image, view, 0,
+                     image.height);
+    if (alpha) values = with_alpha<uint16_t>(values, given, 65535);
+    int bits = spec.get_int_attribute("oiio:BitsPerSample", 16);
+    if (bits < 16) round_bits(values, unsigned(bits));
+    return output.write_image(spec.format, values.data());
+}
+
+/* Colours and channels, pixel by pixel, each in the type that it has in the file. */
+bool write_layers(OIIO::ImageOutput &output, const zt_image *image,
+                  const std::vector<float> &colours, size_t colour_count) {
+    const OIIO::ImageSpec &spec = output.spec();
+    size_t colour_bytes = colour_count * spec.format.size();
+    size_t pixel_bytes = spec.pixel_bytes(true);
+    std::vector<unsigned char> stored(colours.size() * spec.format.size());
+    if (!OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, colours.data(), spec.format,
+                                    stored.data(), int(colours.size())))
+        return false;
+    size_t pixel_count = colours.size() / colour_count;
+    std::vector<unsigned char> bytes(pixel_count * pixel_bytes);
+    for (size_t i = 0; i < pixel_count; i++) {
+        unsigned char *to = bytes.data() + i * pixel_bytes;
+        memcpy(to, stored.data() + i * colour_bytes, colour_bytes);
+        to += colour_bytes;
+        for (int c = 0; c < image->channel_count; c++, to += sizeof(float))
+            memcpy(to, image->channels[c].values + i, sizeof(float));
+    }
+    return output.write_image(OIIO::TypeDesc::UNKNOWN, bytes.data());
+}
+
+bool write_floats(OIIO::ImageOutput &output, const zt_image *image) {
+    const OIIO::ImageSpec &spec = output.spec();
+    float most = spec.format == OIIO::TypeDesc::HALF ? half_max : FLT_MAX;
+    bool layers = !spec.channelformats.empty();
+    size_t colour_count =
+        size_t(spec.nchannels) - (layers ? size_t(image->channel_count) : size_t(0));
+    std::vector<float> pixels(size_t(image->width) * size_t(image->height) * colour_count);
     for (size_t i = 0; i < pixels.size(); i++)
-        pixels[i] = OIIO::clamp(image->pixels[i / 3 * 4 + i % 3], -most, most);
+        pixels[i] =
+            OIIO::clamp(image->pixels[i / colour_count * 4 + i % colour_count], -most, most);
+    if (layers) return write_layers(output, image, pixels, colour_count);
     return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
+}
+
+bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view) {
+    bool integers = output.spec().format == OIIO::TypeDesc::UINT8 ||
+                    output.spec().format == OIIO::TypeDesc::UINT16;
+    return integers ? write_integers(output, image, view) : write_floats(output, image);
 }
 
 zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
@@ -149,14 +316,14 @@ zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
     return ZT_OK;
 }
 
-/* Spreads `channel_count` numbers a pixel over R G B A. */
-void spread(zt_image *image, const float *from, int channel_count) {
+/* Spreads `channel_count` numbers a pixel over R G B A; `alpha` of them is A, if it is one. */
+void spread(zt_image *image, const float *from, int channel_count, int alpha) {
     size_t pixel_count = size_t(image->width) * size_t(image->height);
-    bool grey = channel_count < 3, alpha = channel_count % 2 == 0;
+    bool grey = channel_count < 3, has_alpha = alpha >= 0 && alpha < channel_count;
     for (size_t i = 0; i < pixel_count; i++, from += channel_count) {
         float *to = image->pixels + 4 * i;
         for (int c = 0; c < 3; c++) to[c] = from[grey ? 0 : c];
-        to[3] = alpha ? from[channel_count - 1] : 1;
+        to[3] = has_alpha ? from[alpha] : 1;
     }
 }
 
@@ -175,7 +342,7 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     zt_status status = zt_image_create(image, spec.width, spec.height);
     if (status == ZT_EARGUMENT) return refuse(listener, "read", path, "it is too large");
     if (status != ZT_OK) return status;
-    spread(*image, values.data(), channel_count);
+    spread(*image, values.data(), channel_count, spec.alpha_channel);
     return ZT_OK;
 }
 

@@ -26,7 +26,11 @@ typedef struct zt_bytes {
 
 /* Makes of `image` a file in the format that is wished for, in memory: R, G and B, integers
  * developed by the view, floats of linear light (what a half float cannot hold becomes its
- * largest number). `path` is for messages. ZT_EFILE after telling why. From any thread. */
+ * largest number). A goes along where it is not 1 everywhere and the format has a place for it;
+ * then integers are not multiplied by it, but in DPX; floats are, as in the image. OpenEXR has
+ * the image's further channels, too, as floats. What the image is of, where that is known, goes
+ * to attributes of OpenEXR and to a comment of PNG and TIFF. `path` is for messages. ZT_EFILE
+ * after telling why. From any thread. */
 zt_status zt_image_file_encode(zt_bytes *bytes, const zt_image *image, zt_view view,
                                const zt_image_wishes *wishes, const char *path,
                                zt_listener listener);
