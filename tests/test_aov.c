@@ -246,6 +246,22 @@ static void moving_camera(void **state) {
     zt_image_free(&image);
 }
 
+/* So is what moves before it. */
+static void moving_ball(void **state) {
+    (void)state;
+    const stage s = {{0, 0, 0}, {0.25, 0.5, 5}, false};
+    static const char keys[] = "  - sphere: { center: { curve: linear, keys: {\n"
+                               "      0: [-20.5, 10.25, 0], 20: [19.5, -9.75, 0] } },\n"
+                               "      radius: 1, material: { color: white } }\n";
+    static char text[4096];
+    const char *still = text_of(&s, ", shutter: 180 deg", ""),
+               *ball = strstr(strstr(still, "- box"), "  - sphere");
+    snprintf(text, sizeof text, "%.*s%s", (int)(ball - still), still, keys);
+    zt_image *image = taken(text, 10, ZT_AOV_ALL, 2);
+    check(image, &s, 60); /* of the way that it goes */
+    zt_image_free(&image);
+}
+
 /* The colours have the same bits with channels and without, and all has with one thread and
  * with two; for even samples, and where some pixels take more. */
 static void same_bits(void **state) {
@@ -304,7 +320,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names),         cmocka_unit_test(channels),
         cmocka_unit_test(description),   cmocka_unit_test(against_closed_forms),
-        cmocka_unit_test(moving_camera), cmocka_unit_test(same_bits),
-        cmocka_unit_test(stopped)};
+        cmocka_unit_test(moving_camera), cmocka_unit_test(moving_ball),
+        cmocka_unit_test(same_bits),     cmocka_unit_test(stopped)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
