@@ -23,6 +23,16 @@ static zt_film film_of(const char *words) {
     return film;
 }
 
+/* Each view by its name, and sRGB's where none is named. */
+static void views(void **state) {
+    (void)state;
+    assert_int_equal(film_of("").view, ZT_VIEW_SRGB);
+    assert_int_equal(film_of(", view: raw").view, ZT_VIEW_RAW);
+    assert_int_equal(film_of(", view: srgb").view, ZT_VIEW_SRGB);
+    assert_int_equal(film_of(", view: rec709").view, ZT_VIEW_REC709);
+    assert_int_equal(film_of(", view: filmic").view, ZT_VIEW_FILMIC);
+}
+
 /* Shares of the time from one frame to the next: a turn is all of it. */
 static void shutter(void **state) {
     (void)state;
@@ -198,11 +208,9 @@ static void audio(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shutter),
-        cmocka_unit_test(samples),
-        cmocka_unit_test(filters_and_seeds),
-        cmocka_unit_test(overrides),
-        cmocka_unit_test(what_a_frame_shows),
+        cmocka_unit_test(views),     cmocka_unit_test(shutter),
+        cmocka_unit_test(samples),   cmocka_unit_test(filters_and_seeds),
+        cmocka_unit_test(overrides), cmocka_unit_test(what_a_frame_shows),
         cmocka_unit_test(audio),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
