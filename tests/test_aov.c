@@ -234,7 +234,7 @@ static void moving_camera(void **state) {
     const stage s = {{0, 0, 0}, {0.25, 0.5, 5}, false};
     /* At the stage's eye at frame 10.25. */
     static const char keys[] = "rotation: [0, 0, 0], position: { curve: linear, keys: {\n"
-                               "  0: [-10, 10.75, 5], 20: [10, -9.25, 5] } } }\n";
+                               "  0: [-10, 10.75, 15.25], 20: [10, -9.25, -4.75] } } }\n";
     static char text[4096];
     const char *still = text_of(&s, ", shutter: 180 deg", "");
     const char *camera = strstr(still, "look_at"), *fov = strstr(still, "fov"),
