@@ -196,6 +196,12 @@ static void keys_decide(void **state) {
     assert_int_equal(wanted_of(target, &made, ZT_VIEW_SRGB, NULL), 0);
     made.items[1].key = (zt_hash){0, 0};
     assert_int_equal(wanted_of(target, &made, ZT_VIEW_SRGB, NULL), 2);
+    made.items[2].key = (zt_hash){0, 0}; /* two that are not known are not the same */
+    plan = plan_of(&made, &now);
+    plan.keys = other;
+    output = opened(target, &plan);
+    assert_int_equal(wanted(output), 6);
+    assert_int_equal(zt_output_close(&output), ZT_OK);
 }
 
 /* A file that no record knows is not replaced, unless that is asked for; it stays as it is. */
