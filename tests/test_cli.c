@@ -211,6 +211,35 @@ static void encode_display(void **state) {
     assert_true(same_files("film.0003.png", "again.0003.png"));
 }
 
+/* A Targa file of 2 x 2 pixels of one colour, not multiplied by its alpha. */
+static void write_targa(const char *path, const unsigned char bgra[4]) {
+    const unsigned char header[18] = {[2] = 2, [12] = 2, [14] = 2, [16] = 32, [17] = 8};
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(header, 1, sizeof header, file), sizeof header);
+    for (int i = 0; i < 4; i++) assert_int_equal(fwrite(bgra, 1, 4, file), 4);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* What is not opaque stands before black where the target has no alpha, a fifth of each colour;
+ * where it has, nothing changes. */
+static void encode_alpha(void **state) {
+    (void)state;
+    write_targa("glass.0001.tga", (const unsigned char[]){50, 100, 255, 51});
+    write_targa("dark.0001.tga", (const unsigned char[]){10, 20, 51, 255});
+    write_targa("light.0001.tga", (const unsigned char[]){50, 100, 255, 255});
+    zoetrope_succeeds("encode glass.####.tga -o a/film.####.jpg");
+    zoetrope_succeeds("encode dark.####.tga -o b/film.####.jpg");
+    zoetrope_succeeds("encode light.####.tga -o c/film.####.jpg");
+    assert_true(same_files("a/film.0001.jpg", "b/film.0001.jpg"));
+    assert_false(same_files("a/film.0001.jpg", "c/film.0001.jpg"));
+    zoetrope_succeeds("encode glass.####.tga -o first.####.png");
+    zoetrope_succeeds("encode first.####.png -o first/first.####.png");
+    zoetrope_succeeds("encode light.####.tga -o light.####.png");
+    assert_true(same_files("first.0001.png", "first/first.0001.png"));
+    assert_false(same_files("first.0001.png", "light.0001.png"));
+}
+
 /* What cannot be encoded is told, and leaves nothing behind. */
 static void encode_refusals(void **state) {
     (void)state;
@@ -340,10 +369,18 @@ static void default_targets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DIRECTORY(help_and_version), IN_DIRECTORY(misuse),          IN_DIRECTORY(mistakes),
-        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),           IN_DIRECTORY(encode),
-        IN_DIRECTORY(encode_display),   IN_DIRECTORY(encode_refusals), IN_DIRECTORY(settings),
-        IN_DIRECTORY(precision),        IN_DIRECTORY(default_targets),
+        IN_DIRECTORY(help_and_version),
+        IN_DIRECTORY(misuse),
+        IN_DIRECTORY(mistakes),
+        IN_DIRECTORY(refusals),
+        IN_DIRECTORY(check),
+        IN_DIRECTORY(encode),
+        IN_DIRECTORY(encode_display),
+        IN_DIRECTORY(encode_alpha),
+        IN_DIRECTORY(encode_refusals),
+        IN_DIRECTORY(settings),
+        IN_DIRECTORY(precision),
+        IN_DIRECTORY(default_targets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

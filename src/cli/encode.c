@@ -126,6 +126,13 @@ static zt_status find_pictures(pictures *p, const char *pattern, zt_report *repo
     return ZT_OK;
 }
 
+/* Files for a display hold colours that are not multiplied by A; those of an image are. */
+static void multiply_by_alpha(zt_image *image) {
+    size_t pixel_count = (size_t)image->width * (size_t)image->height;
+    for (float *pixel = image->pixels; pixel < image->pixels + 4 * pixel_count; pixel += 4)
+        for (int c = 0; c < 3; c++) pixel[c] *= pixel[3];
+}
+
 static zt_status read_picture(zt_image **image, const pictures *p, int64_t number,
                               zt_report *report) {
     char *path = NULL;
@@ -134,6 +141,7 @@ static zt_status read_picture(zt_image **image, const pictures *p, int64_t numbe
         return ZT_EMEMORY;
     zt_status status = zt_image_read(image, path, zt_report_listener(report));
     free(path);
+    if (status == ZT_OK && !p->linear) multiply_by_alpha(*image);
     return status;
 }
 
