@@ -302,13 +302,46 @@ static void all_before_a_failure(void **state) {
     }
 }
 
+/* The same where it is in the midst that an image cannot be made, as its size is wrong: those
+ * after it, which may be made already, are dropped. */
+static void all_before_a_failing_make(void **state) {
+    (void)state;
+    for (int t = 0; t < THREAD_COUNTS; t++) {
+        heard h;
+        zt_output *output = open_output("midst.hash", &format, &h);
+        zt_outway *way = open_way(output, thread_counts[t]);
+        zt_image *good, *bad;
+        assert_int_equal(zt_outway_lend(&good, way), ZT_OK);
+        assert_int_equal(zt_outway_lend(&bad, way), ZT_OK);
+        fill(good, 0);
+        bad->width--;
+        for (int i = 0; i < 8; i++) {
+            zt_image_info info = info_of(i);
+            zt_status status = zt_outway_send(way, i == 5 ? bad : good, &info);
+            assert_true(status == ZT_OK || (i > 5 && status == ZT_EARGUMENT));
+        }
+        assert_int_equal(zt_outway_close(&way), ZT_EARGUMENT);
+        assert_told(&h, "15x12");
+        assert_int_equal(zt_output_close(&output), ZT_OK);
+        size_t size;
+        free(file_bytes("midst.hash", &size));
+        assert_int_equal(size, 5 * 58); /* lines of frames 0 to 4 */
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thousands_in_order), cmocka_unit_test(same_bytes),
-        cmocka_unit_test(held_images),        cmocka_unit_test(kept_image),
-        cmocka_unit_test(few_images),         cmocka_unit_test(channels),
-        cmocka_unit_test(too_many_images),    cmocka_unit_test(full_disk),
-        cmocka_unit_test(failing_makes),      cmocka_unit_test(all_before_a_failure),
+        cmocka_unit_test(thousands_in_order),
+        cmocka_unit_test(same_bytes),
+        cmocka_unit_test(held_images),
+        cmocka_unit_test(kept_image),
+        cmocka_unit_test(few_images),
+        cmocka_unit_test(channels),
+        cmocka_unit_test(too_many_images),
+        cmocka_unit_test(full_disk),
+        cmocka_unit_test(failing_makes),
+        cmocka_unit_test(all_before_a_failure),
+        cmocka_unit_test(all_before_a_failing_make),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
