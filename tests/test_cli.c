@@ -72,6 +72,8 @@ static void misuse(void **state) {
         {"explain film.yaml --frames 3-2", "--frames 3-2: must be"},
         {"explain film.yaml --frames 3-", "--frames 3-: must be"},
         {"explain film.yaml --frames -3", "--frames -3: must be"},
+        {"render film.yaml --frames 3-", "frames 3-: at \"\": a frame's number belongs here"},
+        {"render film.yaml --frames 0,7", "there is no frame 7: the film has frames 0 to 5"},
         {"render film.yaml --chunk 0/3", "--chunk 0/3: must be a part"},
         {"render film.yaml --chunk 4/3", "--chunk 4/3: must be a part"},
         {"render film.yaml --chunk 3", "--chunk 3: must be a part"},
@@ -206,9 +208,11 @@ static void encode(void **state) {
 /* Images for a display go as they are: numbers that are developed once more would differ. */
 static void encode_display(void **state) {
     (void)state;
-    zoetrope_succeeds("render film.yaml -o film.####.png");
+    zoetrope_succeeds("frame film.yaml 3 -o film.####.png");
     zoetrope_succeeds("encode film.####.png -o again.####.png");
-    assert_true(same_files("film.0003.png", "again.0003.png"));
+    zoetrope_succeeds("encode film.####.png -o film.hash");
+    zoetrope_succeeds("encode again.####.png -o again.hash");
+    assert_true(same_files("film.hash", "again.hash"));
 }
 
 /* A Targa file of 2 x 2 pixels of one colour, not multiplied by its alpha. */
@@ -297,6 +301,20 @@ static void settings(void **state) {
     read_text(some, "some.hash");
     assert_string_equal(line_of(a, some, 0), line_of(b, all, 5));
     assert_string_equal(line_of(a, some, 1), "");
+    zoetrope_succeeds("render film.yaml --frames -4--1 --chunk 2/2 -o chunk.hash");
+    read_text(some, "chunk.hash");
+    assert_string_equal(line_of(a, some, 0), line_of(b, all, 4));
+    assert_string_equal(line_of(a, some, 1), line_of(b, all, 5));
+    assert_string_equal(line_of(a, some, 2), "");
+    zoetrope_succeeds("render film.yaml --frames 1-5x2,3 -o steps.hash");
+    read_text(some, "steps.hash");
+    for (int i = 0; i < 3; i++)
+        assert_string_equal(line_of(a, some, i), line_of(b, all, 1 + 2 * i));
+    assert_string_equal(line_of(a, some, 3), "");
+    run *r = zoetrope("render film.yaml --frames 2 --chunk 1/2 -o none.hash");
+    assert_int_equal(r->code, 0);
+    assert_contains(r->err, "chunk 1/2 has no frames");
+    assert_int_equal(access("none.hash", F_OK), -1);
     zoetrope_succeeds("-q frame film.yaml 4 -o one.hash");
     read_text(some, "one.hash");
     assert_string_equal(line_of(a, some, 0), line_of(b, all, 4));
@@ -364,7 +382,7 @@ static void default_targets(void **state) {
     assert_int_equal(entry_count("output"), 3);
     zoetrope_succeeds("render film.yaml -o stills/f.###.png");
     assert_true(exists("stills/f.000.png") && exists("stills/f.005.png"));
-    assert_int_equal(entry_count("stills"), 6);
+    assert_int_equal(entry_count("stills"), 7); /* and what is done */
 }
 
 int main(void) {

@@ -19,29 +19,25 @@ extern "C" {
 typedef struct zt_film_order {
     const char *target;              /* as zt_output_open() takes it */
     const zt_output_option *options; /* likewise; NULL: none */
-    const zt_frames *frames; /* in the order in which they are rendered; a movie's rise */
-    int part, part_count;    /* which part of the film's frames these are, where several
-                                processes share the target: each its own; 0, 0: all */
-    zt_budget budget;
-    int64_t verify_count; /* so many frames that need not be rendered are, to be compared */
-    bool overwrites;      /* whatever is there, and whatever a manifest says of it */
+    const zt_frames *frames; /* in the order in which they are rendered; those that are no
+                                images of their own come in rising order */
+    zt_budget budget;        /* for frames that follow each other; all are rendered then */
+    bool overwrites;         /* whatever is there, and whatever is known of it */
+    bool forgets;            /* the target is not held, and nothing is remembered; overwrites */
     const char *description, *title; /* the description's file, and what the film is called */
-    const char *settings;            /* zt_image_info */
 } zt_film_order;
 
 /* What became of the frames. */
 typedef struct zt_film_result {
-    int64_t rendered, held, kept; /* rendered; the same as another one; there already */
-    int64_t verified, wrong; /* rendered for comparison; and those that were not the same */
-    double rendered_s, idle_share; /* wall time; of the cores' time while there was work */
+    int64_t rendered, held, kept; /* rendered; the same as the one before; there already */
 } zt_film_result;
 
-/* Renders what is missing. Holds the target meanwhile: a second process is told who does so,
- * with ZT_EFILE, and nothing changes. The manifest TARGET.manifest is kept beside it as frames
- * are completed. The progress of `watcher` counts the frames that are rendered or held. When it
- * is stopped or fails, all that was completed is there, and the same order goes on from there.
- * ZT_EFILE also for files that are there but not of this film, unless it overwrites, and where
- * a verified frame is not the same; all of them told. */
+/* Renders what is missing. Of images, holds the target meanwhile, by TARGET.lock: a second
+ * process is told who does so, with ZT_EFILE, and nothing changes. What is completed of them is
+ * remembered in TARGET.done, so that the same order goes on where it was stopped or failed;
+ * movies and checksums are made anew. The progress of `watcher` counts all frames, those that
+ * are there already, too. ZT_EFILE also for files that are there but not of this film, unless
+ * it overwrites. */
 zt_status zt_film_render(zt_film_result *result, zt_renderer *renderer,
                          const zt_film_order *order, const zt_watcher *watcher);
 

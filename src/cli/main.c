@@ -96,17 +96,6 @@ static void say_interrupted(const zt_progress *progress, const char *target) {
                       progress->done_count, progress->total_count);
 }
 
-/* Renders the frames, in the time that there may be. */
-static zt_status render_frames(zt_renderer *renderer, const zt_budget *budget, int64_t first,
-                               int64_t last, zt_output *output, zt_progress *progress) {
-    zt_watcher watcher = {show_progress, stopped, progress};
-    if (budget->film_s > 0 || budget->frame_s > 0) {
-        zt_status status = zt_renderer_budget(renderer, first, last, budget, &watcher);
-        if (status != ZT_OK) return status;
-    }
-    return zt_renderer_sequence(renderer, first, last, output, &watcher);
-}
-
 /* Beside the target: what its frames took. */
 static zt_status write_manifest(const zt_renderer *renderer, const char *description,
                                 const char *target, zt_report *report) {
@@ -118,19 +107,20 @@ static zt_status write_manifest(const zt_renderer *renderer, const char *descrip
     return status;
 }
 
-/* Opens the output, which is told the film's title and sound. */
-static zt_status open_output(zt_output **output, const char *target,
-                             const zt_output_format *format, const zt_options *options,
-                             const char *audio, zt_report *report) {
+/* Renders into the output, which is told the film's title and sound. */
+static zt_status render_film(zt_film_result *result, zt_renderer *renderer,
+                             zt_film_order *order, const zt_options *options, const char *audio,
+                             zt_progress *progress) {
     zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 3] = {{"title", NULL}, {"audio", audio}};
+    zt_watcher watcher = {show_progress, stopped, progress};
     int length;
     const char *name = zt_options_name(&length, options);
     char *title = strndup(name, (size_t)length);
     if (!title) return ZT_EMEMORY;
-    wishes[0].value = title;
+    wishes[0].value = order->title = title;
     memcpy(wishes + (audio ? 2 : 1), options->output_options, sizeof options->output_options);
-    zt_status status =
-        zt_output_open(output, target, format, wishes, zt_report_listener(report));
+    order->options = wishes;
+    zt_status status = zt_film_render(result, renderer, order, &watcher);
     free(title);
     return status;
 }
@@ -142,22 +132,28 @@ static const char *audio_from(const zt_film *film, int64_t first, zt_report *rep
     return first > 0 ? NULL : film->audio;
 }
 
-/* Opens the output, renders the frames into it, and closes it whatever happened. */
-static zt_status write_frames(zt_renderer *renderer, const zt_options *options, int64_t first,
-                              int64_t last, const char *target, const char *audio,
+/* Renders the frames that the target lacks. */
+static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
+                              const zt_frames *frames, const char *target, const char *audio,
                               zt_report *report) {
-    zt_output_format format = zt_renderer_format(renderer);
-    format.frame_count = last - first + 1;
-    zt_output *output = NULL;
+    zt_film_order order = {.target = target,
+                           .frames = frames,
+                           .budget = options->budget,
+                           .overwrites = options->overwrites,
+                           .forgets = options->command == ZT_COMMAND_FRAME,
+                           .description = options->file};
+    zt_film_result result;
     listen_for_interrupts();
-    zt_status status = open_output(&output, target, &format, options, audio, report);
-    if (status != ZT_OK) return status;
-    zt_progress progress = zt_progress_begin(report, last - first + 1);
-    status = render_frames(renderer, &options->budget, first, last, output, &progress);
-    zt_status closed = zt_output_close(&output);
-    if (closed == ZT_OK && progress.done_count > 0 && zt_renderer_manifest(renderer))
-        closed = write_manifest(renderer, options->file, target, report);
-    if (closed != ZT_OK) return closed;
+    zt_progress progress = zt_progress_begin(report, frames->count);
+    zt_status status = render_film(&result, renderer, &order, options, audio, &progress);
+    if ((status == ZT_OK || status == ZT_ESTOPPED) && progress.done_count > 0 &&
+        zt_renderer_manifest(renderer)) {
+        zt_status kept = write_manifest(renderer, options->file, target, report);
+        if (kept != ZT_OK) return kept;
+    }
+    if (result.kept > 0)
+        zt_report_say(report, ZT_NOTE, "%" PRId64 " of %" PRId64 " frames were there already",
+                      result.kept, frames->count);
     if (status == ZT_OK) zt_progress_end(&progress, target);
     if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
     return status;
@@ -176,20 +172,27 @@ static int64_t last_frame(const zt_options *options, const zt_film *film) {
 static zt_status render(const zt_options *options, const zt_manifest *manifest,
                         const zt_animation *animation, zt_report *report) {
     const zt_film *film = zt_animation_film(animation);
-    int64_t first = options->first, last = last_frame(options, film);
+    zt_frames frames = {0};
+    zt_status status = zt_options_frames(&frames, options, film, report);
+    if (status != ZT_OK || frames.count == 0) {
+        zt_frames_free(&frames);
+        return status;
+    }
+    int64_t first = frames.numbers[0];
     char *target = zt_options_target(options);
-    if (!target) return ZT_EMEMORY;
     zt_render_settings settings = choose_settings(options, film);
     zt_renderer *renderer = NULL;
-    zt_status status =
-        zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
+    status = target
+                 ? zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report))
+                 : ZT_EMEMORY;
     if (status == ZT_OK && manifest) zt_renderer_follow(renderer, manifest);
     if (status == ZT_OK && options->replays)
         status = replay(renderer, options, report);
     else if (status == ZT_OK)
-        status = write_frames(renderer, options, first, last, target,
+        status = write_frames(renderer, options, &frames, target,
                               audio_from(film, first, report), report);
     zt_renderer_close(&renderer);
+    zt_frames_free(&frames);
     free(target);
     return status;
 }

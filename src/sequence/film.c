@@ -1,0 +1,182 @@
+/* A film: what a target lacks is rendered, behind which it is written; what it has is kept. */
+#include <zoetrope/film.h>
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <zoetrope/aov.h>
+
+#include "base/diag.h"
+#include "base/text.h"
+#include "image/file.h"
+#include "sequence/hold.h"
+#include "sequence/key.h"
+
+/* A film under way. */
+typedef struct making {
+    zt_renderer *renderer;
+    const zt_watcher *watcher;
+    zt_output *output;
+    zt_film_result *result;
+    zt_frames frames; /* in the order in which they come */
+    zt_hash *keys;    /* likewise */
+    bool forgets;
+    bool timed; /* a budget decides the samples, and with them the keys, later */
+    zt_image *images[2];
+    const zt_image *image; /* that is being written */
+    int64_t frame;
+    zt_errand *writer;
+    zt_status written;
+} making;
+
+static void write_frame(void *user) {
+    making *m = user;
+    m->written = zt_output_write(m->output, m->image, m->frame);
+}
+
+static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
+
+static bool is_still(const char *target) {
+    for (const char *const *ending = zt_image_file_endings; *ending; ending++)
+        if (zt_text_ends_with(target, *ending, true)) return true;
+    return false;
+}
+
+static zt_status find_keys(making *m) {
+    for (int64_t i = 0; i < m->frames.count && !m->timed; i++) {
+        if (m->watcher && m->watcher->stopped && m->watcher->stopped(m->watcher->user))
+            return ZT_ESTOPPED;
+        ZT_TRY(zt_renderer_key(&m->keys[i], m->renderer, m->frames.numbers[i]));
+    }
+    return ZT_OK;
+}
+
+/* Renders the image of a position, or leaves the last one where it shows the same. */
+static zt_status make_image(making *m, zt_image **last, int64_t position) {
+    int64_t frame = m->frames.numbers[position];
+    zt_renderer *r = m->renderer;
+    if (m->timed) ZT_TRY(zt_renderer_key(&m->keys[position], r, frame));
+    zt_hash key = m->keys[position];
+    if (*last && !m->timed && same((*last)->info.key, key)) {
+        zt_errand_wait(m->writer); /* whose image it is */
+        (*last)->info.frame = frame;
+        m->result->held++;
+        return ZT_OK;
+    }
+    zt_image *image = *last == m->images[0] ? m->images[1] : m->images[0];
+    ZT_TRY(zt_renderer_frame(r, frame, image, m->watcher));
+    image->info = (zt_image_info){.known = !m->forgets,
+                                  .frame = frame,
+                                  .rate = r->format.rate,
+                                  .key = key,
+                                  .render_s = r->cost.render_s,
+                                  .seed = r->sampling.seed};
+    *last = image;
+    m->result->rendered++;
+    return ZT_OK;
+}
+
+static zt_status make_all(making *m, const zt_film_order *order) {
+    zt_image *last = NULL;
+    for (int64_t i = 0; i < m->frames.count; i++) {
+        if (!zt_output_wants(m->output, i)) {
+            m->result->kept++;
+        } else {
+            ZT_TRY(make_image(m, &last, i));
+            last->info.title = order->title;
+            last->info.description = order->description;
+            zt_errand_wait(m->writer);
+            ZT_TRY(m->written);
+            m->image = last;
+            m->frame = m->frames.numbers[i];
+            zt_errand_send(m->writer);
+        }
+        if (m->watcher && m->watcher->progress)
+            m->watcher->progress(m->watcher->user, i + 1, m->frames.count,
+                                 m->frames.numbers[i]);
+    }
+    zt_errand_wait(m->writer);
+    return m->written;
+}
+
+/* Finds out how many samples there is time for. */
+static zt_status take_budget(making *m, const zt_film_order *order) {
+    const zt_frames *f = &m->frames;
+    if (!m->timed) return ZT_OK;
+    for (int64_t i = 1; i < f->count; i++) {
+        if (f->numbers[i] == f->numbers[0] + i) continue;
+        zt_tell(m->renderer->listener, ZT_ERROR,
+                "a budget of time is for frames that follow each other, and %" PRId64
+                " comes after %" PRId64,
+                f->numbers[i], f->numbers[i - 1]);
+        return ZT_EARGUMENT;
+    }
+    return zt_renderer_budget(m->renderer, f->numbers[0], f->numbers[f->count - 1],
+                              &order->budget, m->watcher);
+}
+
+static zt_status render_into(making *m, const zt_film_order *order) {
+    zt_output_format format = m->renderer->format;
+    zt_status status = take_budget(m, order);
+    if (status == ZT_OK) status = zt_errand_open(&m->writer, write_frame, m);
+    for (int i = 0; i < 2 && status == ZT_OK; i++) {
+        status = zt_image_create(&m->images[i], format.width, format.height);
+        if (status == ZT_OK) status = zt_image_add_aovs(m->images[i], m->renderer->aovs);
+    }
+    if (status == ZT_OK) status = make_all(m, order);
+    zt_errand_close(&m->writer); /* waits for what is still being written */
+    if (status == ZT_ESTOPPED && m->written != ZT_OK) status = m->written;
+    zt_image_free(&m->images[0]);
+    zt_image_free(&m->images[1]);
+    return status;
+}
+
+/* With what the target is known to hold. */
+static zt_status render_held(making *m, const zt_film_order *order, zt_hold *hold) {
+    zt_output_format format = m->renderer->format;
+    zt_output_plan plan = {
+        m->frames.numbers,  m->keys,           m->frames.count, hold->records,
+        hold->record_count, order->overwrites, zt_hold_record,  hold};
+    format.frame_count = m->frames.count;
+    if (!order->forgets && is_still(order->target)) format.plan = &plan;
+    ZT_TRY(find_keys(m));
+    ZT_TRY(zt_output_open(&m->output, order->target, &format, order->options,
+                          m->renderer->listener));
+    zt_status status = render_into(m, order);
+    zt_status closed = zt_output_close(&m->output);
+    return closed != ZT_OK ? closed : status;
+}
+
+/* A movie's frames rise. */
+static zt_status copy_frames(making *m, const zt_film_order *order) {
+    m->frames.count = order->frames->count;
+    m->frames.numbers = calloc((size_t)m->frames.count, sizeof *m->frames.numbers);
+    m->keys = calloc((size_t)m->frames.count, sizeof *m->keys);
+    if (!m->frames.numbers || !m->keys) return ZT_EMEMORY;
+    memcpy(m->frames.numbers, order->frames->numbers,
+           (size_t)m->frames.count * sizeof *m->frames.numbers);
+    if (!is_still(order->target)) zt_frames_sort(&m->frames);
+    return ZT_OK;
+}
+
+zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_order *order,
+                         const zt_watcher *watcher) {
+    *result = (zt_film_result){0};
+    if (order->frames->count < 1) return ZT_EARGUMENT;
+    making m = {.renderer = r, .watcher = watcher, .result = result};
+    m.forgets = order->forgets;
+    m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;
+    zt_hold hold;
+    zt_status status = zt_hold_open(&hold, order->target,
+                                    !order->forgets && is_still(order->target), r->listener);
+    if (status == ZT_OK) {
+        status = copy_frames(&m, order);
+        if (status == ZT_OK) status = render_held(&m, order, &hold);
+        zt_status let_go = zt_hold_close(&hold);
+        if (status == ZT_OK) status = let_go;
+    }
+    zt_frames_free(&m.frames);
+    free(m.keys);
+    return status;
+}
