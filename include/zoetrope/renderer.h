@@ -64,12 +64,6 @@ typedef struct zt_frame_choices {
 /* Finds out without rendering. Fails as rendering does. */
 zt_status zt_renderer_choices(zt_frame_choices *choices, zt_renderer *renderer, int64_t frame);
 
-/* Renders frames first .. last, both included, to an output, writing behind the rendering. When
- * it is stopped or fails, the frames written before are complete, and the output can be closed.
- */
-zt_status zt_renderer_sequence(zt_renderer *renderer, int64_t first, int64_t last,
-                               zt_output *output, const zt_watcher *watcher);
-
 #ifdef __cplusplus
 }
 #endif

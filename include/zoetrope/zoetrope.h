@@ -1,7 +1,6 @@
 /* Zoetrope: a description of an animation becomes a film.
  *
- *   zt_animation_read -> zt_renderer_open -> zt_output_open -> zt_renderer_sequence -> close
- * all
+ *   zt_animation_read -> zt_renderer_open -> zt_film_render -> close all
  */
 #ifndef ZOETROPE_H
 #define ZOETROPE_H

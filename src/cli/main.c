@@ -142,7 +142,7 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                            .overwrites = options->overwrites,
                            .forgets = options->command == ZT_COMMAND_FRAME,
                            .description = options->file};
-    zt_film_result result;
+    zt_film_result result = {0};
     listen_for_interrupts();
     zt_progress progress = zt_progress_begin(report, frames->count);
     zt_status status = render_film(&result, renderer, &order, options, audio, &progress);

@@ -5,13 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <zoetrope/aov.h>
-
 #include "base/diag.h"
 #include "base/text.h"
 #include "image/file.h"
 #include "sequence/hold.h"
 #include "sequence/key.h"
+#include "sequence/outway.h"
 
 /* A film under way. */
 typedef struct making {
@@ -23,17 +22,10 @@ typedef struct making {
     zt_hash *keys;    /* likewise */
     bool forgets;
     bool timed; /* a budget decides the samples, and with them the keys, later */
-    zt_image *images[2];
-    const zt_image *image; /* that is being written */
-    int64_t frame;
-    zt_errand *writer;
-    zt_status written;
+    zt_outway *way;
+    zt_image *last; /* that was lent and filled; NULL: none */
+    zt_image_info info;
 } making;
-
-static void write_frame(void *user) {
-    making *m = user;
-    m->written = zt_output_write(m->output, m->image, m->frame);
-}
 
 static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
 
@@ -53,51 +45,45 @@ static zt_status find_keys(making *m) {
 }
 
 /* Renders the image of a position, or leaves the last one where it shows the same. */
-static zt_status make_image(making *m, zt_image **last, int64_t position) {
+static zt_status make_image(making *m, const zt_film_order *order, int64_t position) {
     int64_t frame = m->frames.numbers[position];
     zt_renderer *r = m->renderer;
     if (m->timed) ZT_TRY(zt_renderer_key(&m->keys[position], r, frame));
     zt_hash key = m->keys[position];
-    if (*last && !m->timed && same((*last)->info.key, key)) {
-        zt_errand_wait(m->writer); /* whose image it is */
-        (*last)->info.frame = frame;
+    if (m->last && !m->timed && same(m->info.key, key)) {
+        m->info.frame = frame;
         m->result->held++;
         return ZT_OK;
     }
-    zt_image *image = *last == m->images[0] ? m->images[1] : m->images[0];
-    ZT_TRY(zt_renderer_frame(r, frame, image, m->watcher));
-    image->info = (zt_image_info){.known = !m->forgets,
-                                  .frame = frame,
-                                  .rate = r->format.rate,
-                                  .key = key,
-                                  .render_s = r->cost.render_s,
-                                  .seed = r->sampling.seed};
-    *last = image;
+    if (m->last) zt_outway_release(m->way, m->last);
+    m->last = NULL;
+    ZT_TRY(zt_outway_lend(&m->last, m->way));
+    ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
+    m->info = (zt_image_info){.known = !m->forgets,
+                              .frame = frame,
+                              .rate = r->format.rate,
+                              .key = key,
+                              .render_s = r->cost.render_s,
+                              .seed = r->sampling.seed,
+                              .title = order->title,
+                              .description = order->description};
     m->result->rendered++;
     return ZT_OK;
 }
 
 static zt_status make_all(making *m, const zt_film_order *order) {
-    zt_image *last = NULL;
     for (int64_t i = 0; i < m->frames.count; i++) {
-        if (!zt_output_wants(m->output, i)) {
-            m->result->kept++;
+        if (zt_output_wants(m->output, i)) {
+            ZT_TRY(make_image(m, order, i));
+            ZT_TRY(zt_outway_send(m->way, m->last, &m->info));
         } else {
-            ZT_TRY(make_image(m, &last, i));
-            last->info.title = order->title;
-            last->info.description = order->description;
-            zt_errand_wait(m->writer);
-            ZT_TRY(m->written);
-            m->image = last;
-            m->frame = m->frames.numbers[i];
-            zt_errand_send(m->writer);
+            m->result->kept++;
         }
         if (m->watcher && m->watcher->progress)
             m->watcher->progress(m->watcher->user, i + 1, m->frames.count,
                                  m->frames.numbers[i]);
     }
-    zt_errand_wait(m->writer);
-    return m->written;
+    return ZT_OK;
 }
 
 /* Finds out how many samples there is time for. */
@@ -117,19 +103,14 @@ static zt_status take_budget(making *m, const zt_film_order *order) {
 }
 
 static zt_status render_into(making *m, const zt_film_order *order) {
-    zt_output_format format = m->renderer->format;
-    zt_status status = take_budget(m, order);
-    if (status == ZT_OK) status = zt_errand_open(&m->writer, write_frame, m);
-    for (int i = 0; i < 2 && status == ZT_OK; i++) {
-        status = zt_image_create(&m->images[i], format.width, format.height);
-        if (status == ZT_OK) status = zt_image_add_aovs(m->images[i], m->renderer->aovs);
-    }
-    if (status == ZT_OK) status = make_all(m, order);
-    zt_errand_close(&m->writer); /* waits for what is still being written */
-    if (status == ZT_ESTOPPED && m->written != ZT_OK) status = m->written;
-    zt_image_free(&m->images[0]);
-    zt_image_free(&m->images[1]);
-    return status;
+    const zt_renderer *r = m->renderer;
+    ZT_TRY(take_budget(m, order));
+    ZT_TRY(zt_outway_open(&m->way, m->output, r->format.width, r->format.height, r->aovs,
+                          zt_pool_thread_count(r->pool)));
+    zt_status status = make_all(m, order);
+    if (m->last) zt_outway_release(m->way, m->last);
+    zt_status written = zt_outway_close(&m->way); /* waits for what is still being written */
+    return written != ZT_OK ? written : status;
 }
 
 /* With what the target is known to hold. */

@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <zoetrope/film.h>
+
 #include "bench.h"
 #include "image/develop.h"
 #include "measure.h"
@@ -49,14 +51,14 @@ static spent render_film(void *user) {
     const char *target = scratch_path("film.mp4");
     int64_t count = zt_animation_film(animation)->frame_count;
     zt_renderer *renderer;
-    zt_output *output;
+    zt_film_result result;
     spent start = spent_now();
     must(zt_renderer_open(&renderer, animation, &(zt_render_settings){0}, to_stderr), target);
-    zt_output_format format = zt_renderer_format(renderer);
-    format.frame_count = count;
-    must(zt_output_open(&output, target, &format, options, to_stderr), target);
-    must(zt_renderer_sequence(renderer, 0, count - 1, output, NULL), target);
-    must(zt_output_close(&output), target);
+    zt_frames all;
+    must(zt_frames_read(&all, "0--1", count, to_stderr), target);
+    zt_film_order order = {.target = target, .options = options, .frames = &all};
+    must(zt_film_render(&result, renderer, &order, NULL), target);
+    zt_frames_free(&all);
     zt_renderer_close(&renderer);
     return spent_per(spent_since(start), (double)count);
 }
