@@ -1,15 +1,18 @@
-/* Content keys: what changes a frame's key, and what does not. */
+/* Films that go on: what changes a frame's content key, and what is rendered again. */
+#include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 
 #include <cmocka.h>
 
-#include <zoetrope/renderer.h>
+#include <zoetrope/film.h>
 
+#include "base/hash.h"
 #include "files.h"
 
 enum { FRAMES = 12 };
@@ -48,7 +51,9 @@ static void print_to(const char *path, const char *text) {
     assert_int_equal(fclose(file), 0);
 }
 
-static void find_keys(zt_hash keys[FRAMES], const change *c) {
+/* The film with a change, ready to be rendered. */
+static void open_changed(zt_animation **animation, zt_renderer **renderer, const change *c,
+                         heard *h) {
     char text[2048];
     const char *name = c->name ? c->name : "clay";
     snprintf(text, sizeof text, film, c->film ? c->film : "", name, name,
@@ -56,15 +61,18 @@ static void find_keys(zt_hash keys[FRAMES], const change *c) {
     print_to("film.yaml", text);
     snprintf(text, sizeof text, mesh, c->point ? c->point : "0");
     print_to("m.ply", text);
+    zt_render_settings settings = c->settings;
+    if (settings.threads == 0) settings.threads = 1;
+    if (zt_animation_read(animation, "film.yaml", NULL, 0, listener_of(h)) != ZT_OK)
+        fail_msg("%s", h->text);
+    assert_int_equal(zt_renderer_open(renderer, *animation, &settings, listener_of(h)), ZT_OK);
+}
+
+static void find_keys(zt_hash keys[FRAMES], const change *c) {
     zt_animation *animation;
     zt_renderer *renderer;
     heard h;
-    if (zt_animation_read(&animation, "film.yaml", NULL, 0, listener_of(&h)) != ZT_OK)
-        fail_msg("%s", h.text);
-    zt_render_settings settings = c->settings;
-    settings.threads = 1;
-    assert_int_equal(zt_renderer_open(&renderer, animation, &settings, (zt_listener){0}),
-                     ZT_OK);
+    open_changed(&animation, &renderer, c, &h);
     for (int frame = 0; frame < FRAMES; frame++)
         assert_int_equal(zt_renderer_key(&keys[frame], renderer, frame), ZT_OK);
     zt_renderer_close(&renderer);
@@ -129,9 +137,154 @@ static void settings_change_all(void **state) {
     }
 }
 
+/* ---- rendering again ------------------------------------------------------------------------
+ */
+
+/* Stops after so many frames. */
+typedef struct patience {
+    int64_t most, done;
+} patience;
+
+static void count_frame(void *user, int64_t done, int64_t total, int64_t frame) {
+    (void)total, (void)frame;
+    ((patience *)user)->done = done;
+}
+
+static bool is_over(void *user) {
+    const patience *p = user;
+    return p->done >= p->most;
+}
+
+/* Renders all frames of the film with a change, or as many as there is patience for. */
+static zt_status render(zt_film_result *result, heard *h, const char *target, const change *c,
+                        zt_film_order order, int64_t patience_frames) {
+    zt_animation *animation;
+    zt_renderer *renderer;
+    open_changed(&animation, &renderer, c, h);
+    int64_t numbers[FRAMES];
+    for (int i = 0; i < FRAMES; i++) numbers[i] = i;
+    zt_frames frames = {numbers, FRAMES};
+    patience p = {patience_frames, 0};
+    zt_watcher watcher = {count_frame, is_over, &p};
+    order.target = target;
+    order.frames = &frames;
+    order.title = order.description = "film";
+    zt_status status = zt_film_render(result, renderer, &order, &watcher);
+    zt_renderer_close(&renderer);
+    zt_animation_free(&animation);
+    return status;
+}
+
+/* Renders what is missing, and says how many frames that were, by what became of them. */
+static void expect(const char *target, const change *c, int rendered, int held, int kept) {
+    zt_film_result result;
+    heard h;
+    zt_status status = render(&result, &h, target, c, (zt_film_order){0}, INT64_MAX);
+    if (status != ZT_OK) fail_msg("%s", h.text);
+    assert_int_equal(result.rendered, rendered);
+    assert_int_equal(result.held, held);
+    assert_int_equal(result.kept, kept);
+}
+
+static zt_hash hash_of(const char *path) {
+    static unsigned char bytes[1 << 16];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    assert_true(size > 0 && size < sizeof bytes);
+    return zt_hash_bytes(bytes, size);
+}
+
+/* Frames 0 to 4 show the same, and so do 8 to 11: one of each is rendered, with the three
+ * between. What is there is kept; what is missing or damaged is made again, with the same
+ * bytes; an edit renders the frames that it moves; a torn line costs its frame. */
+static void films_go_on(void **state) {
+    (void)state;
+    static const char target[] = "a/f.##.png";
+    expect(target, &(change){0}, 5, 7, 0);
+    zt_hash second = hash_of("a/f.02.png"), sixth = hash_of("a/f.06.png");
+    assert_false(same(second, sixth));
+    expect(target, &(change){0}, 0, 0, 12);
+    expect(target, &(change){.name = "plaster"}, 0, 0, 12);
+    expect(target, &(change){.settings.threads = 2}, 0, 0, 12);
+    assert_int_equal(unlink("a/f.02.png"), 0);
+    print_to("a/f.06.png", "damaged");
+    expect(target, &(change){0}, 2, 0, 10);
+    assert_true(same(second, hash_of("a/f.02.png")) && same(sixth, hash_of("a/f.06.png")));
+    expect(target, &(change){.end = "3"}, 4, 3, 5);
+    expect(target, &(change){0}, 4, 3, 5);
+    assert_true(same(sixth, hash_of("a/f.06.png")));
+    struct stat done;
+    assert_int_equal(stat("a/f.##.png.done", &done), 0);
+    assert_int_equal(truncate("a/f.##.png.done", done.st_size - 40), 0);
+    expect(target, &(change){0}, 1, 0, 11); /* the last line was frame 11's */
+    expect(target, &(change){0}, 0, 0, 12);
+    assert_int_equal(access("a/f.##.png.lock", F_OK), -1);
+}
+
+/* What a film that was stopped has is there when it goes on, and the end is the same. */
+static void stopped_films_go_on(void **state) {
+    (void)state;
+    zt_film_result result;
+    heard h;
+    expect("whole.##.png", &(change){0}, 5, 7, 0);
+    assert_int_equal(render(&result, &h, "s.##.png", &(change){0}, (zt_film_order){0}, 6),
+                     ZT_ESTOPPED);
+    assert_int_equal(result.rendered + result.held, 6);
+    expect("s.##.png", &(change){0}, 3, 3, 6);
+    for (int i = 0; i < FRAMES; i++) {
+        char whole[32], stopped[32];
+        snprintf(whole, sizeof whole, "whole.%02d.png", i);
+        snprintf(stopped, sizeof stopped, "s.%02d.png", i);
+        /* They tell their keys, and how they were made is the same. */
+        assert_true(same(hash_of(whole), hash_of(stopped)));
+    }
+}
+
+/* A file that is not known to be of this film stays as it is, unless it may be replaced. */
+static void strangers_stay(void **state) {
+    (void)state;
+    zt_film_result result;
+    heard h;
+    print_to("t.05.png", "somebody else's");
+    zt_hash before = hash_of("t.05.png");
+    assert_int_equal(
+        render(&result, &h, "t.##.png", &(change){0}, (zt_film_order){0}, INT64_MAX), ZT_EFILE);
+    assert_told(&h, "t.05.png");
+    assert_non_null(strstr(h.text, "--overwrite"));
+    assert_true(same(before, hash_of("t.05.png")) && access("t.00.png", F_OK) != 0);
+    assert_int_equal(render(&result, &h, "t.##.png", &(change){0},
+                            (zt_film_order){.overwrites = true}, INT64_MAX),
+                     ZT_OK);
+    assert_int_equal(result.rendered + result.held, FRAMES);
+    assert_false(same(before, hash_of("t.05.png")));
+}
+
+/* A second one is told who is at work, and changes nothing. */
+static void one_at_a_time(void **state) {
+    (void)state;
+    zt_film_result result;
+    heard h;
+    print_to("l.##.png.lock", "process 17 on attic\n");
+    int lock = open("l.##.png.lock", O_RDWR);
+    assert_true(lock >= 0 && flock(lock, LOCK_EX) == 0);
+    assert_int_equal(
+        render(&result, &h, "l.##.png", &(change){0}, (zt_film_order){0}, INT64_MAX), ZT_EFILE);
+    assert_told(&h, "l.##.png is being rendered by process 17 on attic");
+    assert_true(access("l.00.png", F_OK) != 0 && access("l.##.png.lock", F_OK) == 0);
+    close(lock); /* it died: what is left of its lock holds nobody up */
+    expect("l.##.png", &(change){0}, 5, 7, 0);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_told_apart), cmocka_unit_test(names_change_nothing),
-        cmocka_unit_test(keys_change_their_frames), cmocka_unit_test(settings_change_all)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(frames_are_told_apart),
+                                       cmocka_unit_test(names_change_nothing),
+                                       cmocka_unit_test(keys_change_their_frames),
+                                       cmocka_unit_test(settings_change_all),
+                                       cmocka_unit_test(films_go_on),
+                                       cmocka_unit_test(stopped_films_go_on),
+                                       cmocka_unit_test(strangers_stay),
+                                       cmocka_unit_test(one_at_a_time)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -33,7 +33,6 @@ typedef struct zt_film {
     zt_sampling sampling;
     zt_shutter shutter;
     const char *audio; /* the path of its sound, or NULL; the animation's own */
-    bool transparent;  /* where nothing is met; else it is black there */
     unsigned aovs;     /* bits of zt_aov (zoetrope/aov.h) that images have besides R G B A */
 } zt_film;
 

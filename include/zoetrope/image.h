@@ -53,8 +53,8 @@ typedef struct zt_channel {
 } zt_channel;
 
 /* Linear light, Rec. 709 primaries, float. `pixels` holds height * width * 4 numbers, rows from
- * the top, each pixel R G B A: colours are multiplied by A, how much of the pixel is covered; 1
- * where the background is not transparent. */
+ * the top, each pixel R G B A: colours are multiplied by A, how much of the pixel is covered: 1
+ * of all that is rendered. */
 typedef struct zt_image {
     int width, height;
     float *pixels;

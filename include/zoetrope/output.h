@@ -80,8 +80,8 @@ typedef zt_wish zt_output_option;
  *
  * - film.mp4: a movie, H.264 where no codec is wished for; also .mov .mkv, .webm (VP9), .gif,
  * .apng.
- * - frames.####.png, frames.%04d.exr: numbered images, also .tif .tiff .jpg .jpeg; one # for
- * each digit, and more digits where the number needs them.
+ * - frames.####.png, frames.%04d.exr, frames.@@@@.tif: numbered images, also .tif .tiff .jpg
+ * .jpeg; one # for each digit, and more digits where the number needs them.
  * - image.png: one image; a second one is refused.
  * - film.hash: a line for each frame, with its number, its size, and the XXH3 128-bit checksum
  * of its float pixels, in fixed columns.

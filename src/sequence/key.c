@@ -55,8 +55,8 @@ zt_status zt_renderer_key_of(zt_hash *key, zt_renderer *r, int64_t frame,
                               s->min,          s->max,
                               s->error,        s->mean_max,
                               s->edges,        s->filter,
-                              s->filter_width, s->seed,
-                              s->seed_fixed,   r->animation->film.transparent};
+                              s->filter_width, (double)(s->seed >> 32),
+                              s->seed_fixed,   (double)(s->seed & UINT32_MAX)};
     const zt_hash parts[] = {zt_hash_bytes(arithmetic, sizeof arithmetic),
                              zt_hash_bytes(numbers, sizeof numbers), r->held,
                              zt_shutter_content(&exposure)};
