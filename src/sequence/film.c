@@ -9,8 +9,8 @@
 #include "base/text.h"
 #include "image/file.h"
 #include "sequence/hold.h"
-#include "sequence/key.h"
 #include "sequence/outway.h"
+#include "sequence/renderer.h"
 
 /* A film under way. */
 typedef struct making {
@@ -21,7 +21,8 @@ typedef struct making {
     zt_frames frames; /* in the order in which they come */
     zt_hash *keys;    /* likewise */
     bool forgets;
-    bool timed; /* a budget decides the samples, and with them the keys, later */
+    bool planned; /* keys are known before the first frame; else each when it is its turn */
+    bool timed;   /* a budget decides the samples, and with them the keys, later */
     zt_outway *way;
     zt_image *last; /* that was lent and filled; NULL: none */
     zt_image_info info;
@@ -36,7 +37,7 @@ static bool is_still(const char *target) {
 }
 
 static zt_status find_keys(making *m) {
-    for (int64_t i = 0; i < m->frames.count && !m->timed; i++) {
+    for (int64_t i = 0; i < m->frames.count && m->planned; i++) {
         if (m->watcher && m->watcher->stopped && m->watcher->stopped(m->watcher->user))
             return ZT_ESTOPPED;
         ZT_TRY(zt_renderer_key(&m->keys[i], m->renderer, m->frames.numbers[i]));
@@ -48,9 +49,9 @@ static zt_status find_keys(making *m) {
 static zt_status make_image(making *m, const zt_film_order *order, int64_t position) {
     int64_t frame = m->frames.numbers[position];
     zt_renderer *r = m->renderer;
-    if (m->timed) ZT_TRY(zt_renderer_key(&m->keys[position], r, frame));
+    if (!m->planned && !m->forgets) ZT_TRY(zt_renderer_key(&m->keys[position], r, frame));
     zt_hash key = m->keys[position];
-    if (m->last && !m->timed && same(m->info.key, key)) {
+    if (m->last && !m->timed && !m->forgets && same(m->info.key, key)) {
         m->info.frame = frame;
         m->result->held++;
         return ZT_OK;
@@ -120,7 +121,9 @@ static zt_status render_held(making *m, const zt_film_order *order, zt_hold *hol
         m->frames.numbers,  m->keys,           m->frames.count, hold->records,
         hold->record_count, order->overwrites, zt_hold_record,  hold};
     format.frame_count = m->frames.count;
-    if (!order->forgets && is_still(order->target)) format.plan = &plan;
+    bool keeps = !order->forgets && is_still(order->target);
+    if (keeps) format.plan = &plan;
+    m->planned = keeps && !m->timed;
     ZT_TRY(find_keys(m));
     ZT_TRY(zt_output_open(&m->output, order->target, &format, order->options,
                           m->renderer->listener));

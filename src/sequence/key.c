@@ -1,5 +1,5 @@
 /* What decides a frame's pixels, as one hash. */
-#include "sequence/key.h"
+#include "sequence/renderer.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -42,27 +42,22 @@ static zt_status find_held(zt_renderer *r) {
     return ZT_OK;
 }
 
-zt_status zt_renderer_key_of(zt_hash *key, zt_renderer *r, int64_t frame,
-                             const zt_sampling *s) {
+zt_status zt_renderer_key(zt_hash *key, zt_renderer *r, int64_t frame) {
     zt_exposure exposure;
     zt_division division;
+    zt_sampling s;
+    ZT_TRY(zt_pacing_sampling(&s, r, frame));
     ZT_TRY(find_held(r));
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&exposure, &division, r->animation, frame, r->format.height,
                              &r->frame, r->listener));
-    const double numbers[] = {r->format.width, r->format.height, r->precision,    r->aovs,
-                              s->min,          s->max,           s->error,        s->mean_max,
-                              s->edges,        s->filter,        s->filter_width, s->seed,
-                              s->seed_fixed};
+    const double numbers[] = {
+        r->format.width, r->format.height, r->precision, r->aovs, s.min,
+        s.max,           s.error,          s.mean_max,   s.edges, s.filter,
+        s.filter_width,  s.seed,           s.seed_fixed};
     const zt_hash parts[] = {zt_hash_bytes(arithmetic, sizeof arithmetic),
                              zt_hash_bytes(numbers, sizeof numbers), r->held,
                              zt_shutter_content(&exposure)};
     *key = zt_hash_bytes(parts, sizeof parts);
     return ZT_OK;
-}
-
-zt_status zt_renderer_key(zt_hash *key, zt_renderer *r, int64_t frame) {
-    zt_sampling sampling;
-    ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
-    return zt_renderer_key_of(key, r, frame, &sampling);
 }

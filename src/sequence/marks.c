@@ -121,8 +121,7 @@ double zt_marks_plane(vec3 *normal, const zt_plane *plane, const xform *world) {
            vec3_dot(*normal, world->shift);
 }
 
-/* ---- what a glance allows
- * ---------------------------------------------------------------------
+/* ---- what a glance allows -------------------------------------------------------------------
  */
 
 static double pixels_at(const zt_pixel *pixel, double distance) {
