@@ -273,8 +273,40 @@ static void one_at_a_time(void **state) {
         render(&result, &h, "l.##.png", &(change){0}, (zt_film_order){0}, INT64_MAX), ZT_EFILE);
     assert_told(&h, "l.##.png is being rendered by process 17 on attic");
     assert_true(access("l.00.png", F_OK) != 0 && access("l.##.png.lock", F_OK) == 0);
+    zt_film_order part = {.part = 1, .part_count = 2};
+    assert_int_equal(render(&result, &h, "l.##.png", &(change){0}, part, INT64_MAX), ZT_EFILE);
     close(lock); /* it died: what is left of its lock holds nobody up */
     expect("l.##.png", &(change){0}, 5, 7, 0);
+}
+
+/* Several share a target, each a part of its own; nobody takes all of it meanwhile. What any of
+ * them completed is known to all. */
+static void parts_share(void **state) {
+    (void)state;
+    static const char target[] = "p.##.png";
+    const zt_film_order first = {.part = 1, .part_count = 2},
+                        second = {.part = 2, .part_count = 2};
+    zt_film_result result;
+    heard h;
+    int whole = open("p.##.png.lock", O_RDWR | O_CREAT, 0666);
+    int part = open("p.##.png.1-of-2.lock", O_RDWR | O_CREAT, 0666);
+    assert_true(flock(whole, LOCK_SH) == 0 && flock(part, LOCK_EX) == 0);
+    assert_int_equal(render(&result, &h, target, &(change){0}, first, INT64_MAX), ZT_EFILE);
+    assert_told(&h, "part 1 of 2 of p.##.png is being rendered by");
+    assert_int_equal(render(&result, &h, target, &(change){0}, (zt_film_order){0}, INT64_MAX),
+                     ZT_EFILE);
+    assert_told(&h, "p.##.png is being rendered by");
+    assert_true(access("p.00.png", F_OK) != 0);
+    assert_int_equal(render(&result, &h, target, &(change){0}, second, INT64_MAX), ZT_OK);
+    assert_int_equal(result.rendered + result.held, FRAMES);
+    assert_true(access("p.##.png.lock", F_OK) == 0 &&
+                access("p.##.png.2-of-2.lock", F_OK) != 0);
+    close(part);
+    close(whole);
+    assert_int_equal(render(&result, &h, target, &(change){0}, first, INT64_MAX), ZT_OK);
+    assert_int_equal(result.kept, FRAMES);
+    assert_true(access("p.##.png.lock", F_OK) != 0 &&
+                access("p.##.png.1-of-2.lock", F_OK) != 0);
 }
 
 int main(void) {
@@ -285,6 +317,7 @@ int main(void) {
                                        cmocka_unit_test(films_go_on),
                                        cmocka_unit_test(stopped_films_go_on),
                                        cmocka_unit_test(strangers_stay),
-                                       cmocka_unit_test(one_at_a_time)};
+                                       cmocka_unit_test(one_at_a_time),
+                                       cmocka_unit_test(parts_share)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

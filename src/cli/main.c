@@ -138,6 +138,8 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                               zt_report *report) {
     zt_film_order order = {.target = target,
                            .frames = frames,
+                           .part = options->part,
+                           .part_count = options->part_count,
                            .budget = options->budget,
                            .overwrites = options->overwrites,
                            .forgets = options->command == ZT_COMMAND_FRAME,

@@ -151,15 +151,14 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     making m = {.renderer = r, .watcher = watcher, .result = result};
     m.forgets = order->forgets;
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;
-    zt_hold hold;
-    zt_status status = zt_hold_open(&hold, order->target,
-                                    !order->forgets && is_still(order->target), r->listener);
-    if (status == ZT_OK) {
-        status = copy_frames(&m, order);
-        if (status == ZT_OK) status = render_held(&m, order, &hold);
-        zt_status let_go = zt_hold_close(&hold);
-        if (status == ZT_OK) status = let_go;
-    }
+    zt_hold hold = {0};
+    zt_status status = copy_frames(&m, order);
+    if (status == ZT_OK && !order->forgets && is_still(order->target))
+        status =
+            zt_hold_open(&hold, order->target, order->part, order->part_count, r->listener);
+    if (status == ZT_OK) status = render_held(&m, order, &hold);
+    zt_status let_go = zt_hold_close(&hold);
+    if (status == ZT_OK) status = let_go;
     zt_frames_free(&m.frames);
     free(m.keys);
     return status;

@@ -19,49 +19,61 @@ static zt_status fail(const zt_hold *h, const char *path) {
     return ZT_EFILE;
 }
 
-static zt_status open_lock(zt_hold *h) {
-    h->lock = open(h->lock_path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (h->lock < 0 && errno == ENOENT) { /* its directory is missing */
+static zt_status open_lock(const zt_hold *h, zt_lock *lock) {
+    lock->file = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock->file < 0 && errno == ENOENT) { /* its directory is missing */
         zt_aside aside;
-        ZT_TRY(zt_aside_open(&aside, h->lock_path, h->listener));
+        ZT_TRY(zt_aside_open(&aside, lock->path, h->listener));
         zt_aside_drop(&aside);
-        h->lock = open(h->lock_path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        lock->file = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     }
-    return h->lock < 0 ? fail(h, h->lock_path) : ZT_OK;
+    return lock->file < 0 ? fail(h, lock->path) : ZT_OK;
 }
 
-static zt_status refuse(const zt_hold *h, const char *target) {
+static zt_status refuse(const zt_hold *h, const zt_lock *lock, const char *what) {
     char holder[320];
-    ssize_t length = pread(h->lock, holder, sizeof holder - 1, 0);
+    ssize_t length = pread(lock->file, holder, sizeof holder - 1, 0);
     holder[length > 0 ? length : 0] = '\0';
     holder[strcspn(holder, "\n")] = '\0';
-    zt_tell(h->listener, ZT_ERROR, "%s is being rendered by %s", target,
+    zt_tell(h->listener, ZT_ERROR, "%s is being rendered by %s", what,
             *holder ? holder : "another process");
     return ZT_EFILE;
 }
 
-static zt_status say_holder(const zt_hold *h) {
+static zt_status say_holder(const zt_hold *h, const zt_lock *lock) {
     char host[256] = "", text[320];
     gethostname(host, sizeof host - 1);
     int length = snprintf(text, sizeof text, "process %ld on %s\n", (long)getpid(), host);
     bool good =
-        ftruncate(h->lock, 0) == 0 && pwrite(h->lock, text, (size_t)length, 0) == length;
-    return good ? ZT_OK : fail(h, h->lock_path);
+        ftruncate(lock->file, 0) == 0 && pwrite(lock->file, text, (size_t)length, 0) == length;
+    return good ? ZT_OK : fail(h, lock->path);
 }
 
-static zt_status take_lock(zt_hold *h, const char *target) {
+/* `kind` is LOCK_EX or LOCK_SH. */
+static zt_status take_lock(const zt_hold *h, zt_lock *lock, int kind, const char *what) {
     for (;;) {
         struct stat there;
-        ZT_TRY(open_lock(h));
-        if (flock(h->lock, LOCK_EX | LOCK_NB) != 0) {
-            zt_status status = errno == EWOULDBLOCK ? refuse(h, target) : fail(h, h->lock_path);
-            close(h->lock);
-            h->lock = -1;
+        ZT_TRY(open_lock(h, lock));
+        if (flock(lock->file, kind | LOCK_NB) != 0) {
+            zt_status status =
+                errno == EWOULDBLOCK ? refuse(h, lock, what) : fail(h, lock->path);
+            close(lock->file);
+            lock->file = -1;
             return status;
         }
-        if (fstat(h->lock, &there) == 0 && there.st_nlink > 0) return say_holder(h);
-        close(h->lock); /* removed by the one that held it until now */
+        if (fstat(lock->file, &there) == 0 && there.st_nlink > 0) return say_holder(h, lock);
+        close(lock->file); /* removed by the one that held it until now */
     }
+}
+
+/* The last one that shares it removes it. */
+static void let_go(zt_lock *lock) {
+    if (lock->path && lock->file >= 0) {
+        if (flock(lock->file, LOCK_EX | LOCK_NB) == 0) unlink(lock->path);
+        close(lock->file);
+    }
+    free(lock->path);
+    *lock = (zt_lock){NULL, -1};
 }
 
 #define LINE                                                                                   \
@@ -102,12 +114,26 @@ static zt_status read_records(zt_hold *h) {
     return status;
 }
 
-zt_status zt_hold_open(zt_hold *h, const char *target, bool locks, zt_listener listener) {
-    *h = (zt_hold){.lock = -1, .done = -1, .listener = listener};
-    if (!locks) return ZT_OK;
-    h->lock_path = zt_text_print("%s.lock", target);
+static zt_status take_part(zt_hold *h, const char *target, int64_t part, int64_t part_count) {
+    char *what =
+        zt_text_print("part %" PRId64 " of %" PRId64 " of %s", part, part_count, target);
+    h->part.path =
+        zt_text_print("%s.%" PRId64 "-of-%" PRId64 ".lock", target, part, part_count);
+    zt_status status =
+        what && h->part.path ? take_lock(h, &h->part, LOCK_EX, what) : ZT_EMEMORY;
+    free(what);
+    return status;
+}
+
+zt_status zt_hold_open(zt_hold *h, const char *target, int64_t part, int64_t part_count,
+                       zt_listener listener) {
+    *h = (zt_hold){.whole.file = -1, .part.file = -1, .done = -1, .listener = listener};
+    h->whole.path = zt_text_print("%s.lock", target);
     h->done_path = zt_text_print("%s.done", target);
-    zt_status status = h->lock_path && h->done_path ? take_lock(h, target) : ZT_EMEMORY;
+    zt_status status = h->whole.path && h->done_path ? ZT_OK : ZT_EMEMORY;
+    if (status == ZT_OK)
+        status = take_lock(h, &h->whole, part_count > 0 ? LOCK_SH : LOCK_EX, target);
+    if (status == ZT_OK && part_count > 0) status = take_part(h, target, part, part_count);
     if (status == ZT_OK) status = read_records(h);
     if (status != ZT_OK) (void)zt_hold_close(h);
     return status;
@@ -135,14 +161,11 @@ zt_status zt_hold_record(void *user, const zt_output_record *r) {
 
 zt_status zt_hold_close(zt_hold *h) {
     zt_status status = ZT_OK;
-    if (h->done >= 0 && close(h->done) != 0) status = fail(h, h->done_path);
-    if (h->lock >= 0) {
-        unlink(h->lock_path);
-        close(h->lock);
-    }
-    free(h->lock_path);
+    if (h->done_path && h->done >= 0 && close(h->done) != 0) status = fail(h, h->done_path);
+    let_go(&h->part);
+    let_go(&h->whole);
     free(h->done_path);
     free(h->records);
-    *h = (zt_hold){.lock = -1, .done = -1};
+    *h = (zt_hold){0};
     return status;
 }
