@@ -192,7 +192,7 @@ static void keys_decide(void **state) {
     assert_int_equal(wanted_of(target, &made, ZT_VIEW_SRGB, NULL), 0);
     made.items[made.count] = made.items[0]; /* a piece of a movie, not an image */
     made.items[made.count].key.low ^= 1;
-    made.items[made.count++].count = 2;
+    made.items[made.count++].kind = ZT_RECORD_PIECE;
     assert_int_equal(wanted_of(target, &made, ZT_VIEW_SRGB, NULL), 0);
     made.items[1].key = (zt_hash){0, 0};
     assert_int_equal(wanted_of(target, &made, ZT_VIEW_SRGB, NULL), 2);

@@ -17,17 +17,24 @@ extern "C" {
 
 typedef struct zt_output zt_output;
 
-/* Something that an output has completed and can find again: an image of numbered ones, or a
- * piece of a movie. */
+/* Something that an output has completed and can find again. */
+typedef enum zt_record_kind {
+    ZT_RECORD_IMAGE, /* an image of numbered ones, with its final name */
+    ZT_RECORD_PIECE, /* some frames of a movie, encoded so that they stand alone */
+    ZT_RECORD_FRAME  /* a frame that waits for its piece to be complete */
+} zt_record_kind;
+
 typedef struct zt_output_record {
-    int64_t first; /* an image: its frame's number; a piece: the position of its first frame, as
-                      frames come, from 0 */
-    int64_t count; /* of frames; 1 of an image */
-    zt_hash key;   /* of what decides the bytes: all of its frames' keys, and how they are
-                      written */
-    int64_t bytes; /* an image: the size of its file; a piece: where it ends in the growing film
-                    */
-    zt_hash checksum; /* of an image's file; of what a piece holds, in whatever file that is */
+    zt_record_kind kind;
+    int64_t first;    /* an image: its frame's number; else the position of the first frame, as
+                         frames come, from 0 */
+    int64_t count;    /* of frames; 1 but of a piece */
+    zt_hash key;      /* of what decides the bytes: all of its frames' keys, and how they are
+                         written */
+    int64_t bytes;    /* an image: the size of its file; else where it ends in the file that
+                         grows */
+    zt_hash checksum; /* of an image's file; of what else is held, in whatever file that is */
+    double render_s;  /* seconds of wall time that its frames took to render, added up */
 } zt_output_record;
 
 /* What is to come, and what there is of it. The caller's, until the output is closed. */

@@ -34,6 +34,7 @@ typedef struct still {
     zt_bytes bytes;
     zt_hash key;      /* of the record; zero: not known */
     zt_hash checksum; /* of the bytes, where there is a plan */
+    double render_s;
 } still;
 
 static zt_status close_stills(void *state, bool keep) {
@@ -151,7 +152,7 @@ static zt_status sort_records(stills *images) {
     images->records = calloc((size_t)plan->record_count, sizeof *images->records);
     if (!images->records) return ZT_EMEMORY;
     for (int64_t i = 0; i < plan->record_count; i++)
-        if (plan->records[i].count == 1)
+        if (plan->records[i].kind == ZT_RECORD_IMAGE)
             images->records[images->record_count++] = &plan->records[i];
     qsort(images->records, (size_t)images->record_count, sizeof *images->records, by_frame);
     return ZT_OK;
@@ -266,6 +267,7 @@ static zt_status encode_still(still *ready, const stills *images, const zt_image
     free(path);
     if (status != ZT_OK || !images->plan) return status;
     ready->checksum = zt_hash_bytes(ready->bytes.data, ready->bytes.size);
+    ready->render_s = image->info.render_s;
     return key_of(&ready->key, images, image->info.known ? image->info.key : (zt_hash){0});
 }
 
@@ -293,11 +295,13 @@ static zt_status write_file(const stills *images, const zt_bytes *bytes, const c
 static zt_status record(const stills *images, const still *ready, int64_t frame) {
     const zt_output_plan *plan = images->plan;
     if (!plan || !plan->completed) return ZT_OK;
-    const zt_output_record record = {.first = frame,
+    const zt_output_record record = {.kind = ZT_RECORD_IMAGE,
+                                     .first = frame,
                                      .count = 1,
                                      .key = ready->key,
                                      .bytes = (int64_t)ready->bytes.size,
-                                     .checksum = ready->checksum};
+                                     .checksum = ready->checksum,
+                                     .render_s = ready->render_s};
     return plan->completed(plan->user, &record);
 }
 

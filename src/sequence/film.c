@@ -30,10 +30,19 @@ typedef struct making {
 
 static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
 
+static bool ends_with_any(const char *target, const char *const *endings) {
+    while (*endings && !zt_text_ends_with(target, *endings, true)) endings++;
+    return *endings;
+}
+
 static bool is_still(const char *target) {
-    for (const char *const *ending = zt_image_file_endings; *ending; ending++)
-        if (zt_text_ends_with(target, *ending, true)) return true;
-    return false;
+    return ends_with_any(target, zt_image_file_endings);
+}
+
+/* Checksums are made anew. */
+static bool is_remembered(const zt_film_order *order) {
+    static const char *const made_anew[] = {".hash", NULL};
+    return !order->forgets && !ends_with_any(order->target, made_anew);
 }
 
 static zt_status find_keys(making *m) {
@@ -121,9 +130,8 @@ static zt_status render_held(making *m, const zt_film_order *order, zt_hold *hol
         m->frames.numbers,  m->keys,           m->frames.count, hold->records,
         hold->record_count, order->overwrites, zt_hold_record,  hold};
     format.frame_count = m->frames.count;
-    bool keeps = !order->forgets && is_still(order->target);
-    if (keeps) format.plan = &plan;
-    m->planned = keeps && !m->timed;
+    if (is_remembered(order)) format.plan = &plan;
+    m->planned = format.plan && !m->timed;
     ZT_TRY(find_keys(m));
     ZT_TRY(zt_output_open(&m->output, order->target, &format, order->options,
                           m->renderer->listener));
@@ -153,7 +161,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;
     zt_hold hold = {0};
     zt_status status = copy_frames(&m, order);
-    if (status == ZT_OK && !order->forgets && is_still(order->target))
+    if (status == ZT_OK && is_remembered(order))
         status =
             zt_hold_open(&hold, order->target, order->part, order->part_count, r->listener);
     if (status == ZT_OK) status = render_held(&m, order, &hold);

@@ -77,11 +77,13 @@ static void let_go(zt_lock *lock) {
 }
 
 #define LINE                                                                                   \
-    "{\"written\": %" PRId64 ", \"count\": %" PRId64 ", \"key\": \"%016" PRIx64 "%016" PRIx64  \
-    "\", \"bytes\": %" PRId64 ", \"checksum\": \"%016" PRIx64 "%016" PRIx64 "\"}\n"
+    "{\"kind\": %d, \"written\": %" PRId64 ", \"count\": %" PRId64 ", \"key\": \"%016" PRIx64  \
+    "%016" PRIx64 "\", \"bytes\": %" PRId64 ", \"checksum\": \"%016" PRIx64 "%016" PRIx64      \
+    "\", \"time\": %.6f}\n"
 #define LINE_READ                                                                              \
-    "{\"written\": %" SCNd64 ", \"count\": %" SCNd64 ", \"key\": \"%16" SCNx64 "%16" SCNx64    \
-    "\", \"bytes\": %" SCNd64 ", \"checksum\": \"%16" SCNx64 "%16" SCNx64 "\"%1[}]"
+    "{\"kind\": %d, \"written\": %" SCNd64 ", \"count\": %" SCNd64 ", \"key\": \"%16" SCNx64   \
+    "%16" SCNx64 "\", \"bytes\": %" SCNd64 ", \"checksum\": \"%16" SCNx64 "%16" SCNx64         \
+    "\", \"time\": %lf%1[}]"
 
 static zt_status add_record(zt_hold *h, const zt_output_record *record, int64_t *capacity) {
     if (h->record_count == *capacity) {
@@ -105,9 +107,12 @@ static zt_status read_records(zt_hold *h) {
     zt_status status = ZT_OK;
     while (status == ZT_OK && getline(&line, &size, file) > 0) {
         zt_output_record r;
-        if (sscanf(line, LINE_READ, &r.first, &r.count, &r.key.high, &r.key.low, &r.bytes,
-                   &r.checksum.high, &r.checksum.low, end) == 8)
+        int kind;
+        if (sscanf(line, LINE_READ, &kind, &r.first, &r.count, &r.key.high, &r.key.low,
+                   &r.bytes, &r.checksum.high, &r.checksum.low, &r.render_s, end) == 10) {
+            r.kind = (zt_record_kind)kind;
             status = add_record(h, &r, &capacity);
+        }
     }
     free(line);
     fclose(file);
@@ -154,8 +159,9 @@ zt_status zt_hold_record(void *user, const zt_output_record *r) {
     zt_hold *h = user;
     char text[320];
     if (h->done < 0) ZT_TRY(open_done(h));
-    int length = snprintf(text, sizeof text, LINE, r->first, r->count, r->key.high, r->key.low,
-                          r->bytes, r->checksum.high, r->checksum.low);
+    int length =
+        snprintf(text, sizeof text, LINE, (int)r->kind, r->first, r->count, r->key.high,
+                 r->key.low, r->bytes, r->checksum.high, r->checksum.low, r->render_s);
     return write(h->done, text, (size_t)length) == length ? ZT_OK : fail(h, h->done_path);
 }
 
