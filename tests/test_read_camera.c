@@ -49,6 +49,10 @@ static void kinds(void **state) {
     c = camera_of(FILM "camera: { lens: perspective, focal_length: 50, sensor_height: 18 }\n",
                   0);
     assert_near(zt_camera_half_height(&c), 0.18);
+    c = camera_of(FILM "camera: { sensor_height: 18mm, focal_length: { curve: linear, keys: { "
+                       "0 s: 50 mm, 2 s: 100 } } }\n",
+                  1);
+    assert_near(zt_camera_half_height(&c), 0.12);
     c = camera_of(FILM "camera: { lens: orthographic, height: 5 }\n", 0);
     assert_int_equal(c.lens, ZT_LENS_ORTHOGRAPHIC);
     assert_near(zt_camera_half_height(&c), 2.5);

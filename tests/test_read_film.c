@@ -122,7 +122,7 @@ static void filters_and_seeds(void **state) {
 /* All of it can be set from outside, too, and is checked as the text is. */
 static void overrides(void **state) {
     (void)state;
-    const zt_override good[] = {{"film.shutter", "{ angle: 90, phase: 45 }"},
+    const zt_override good[] = {{"film.shutter", "{ angle: 90, phase: 45, error: 0.1 }"},
                                 {"film.samples", "{ error: 0.1 }"},
                                 {"film.seed", "fixed"},
                                 {"film.filter", "tent"}},
@@ -135,6 +135,7 @@ static void overrides(void **state) {
     const zt_film *film = zt_animation_film(animation);
     assert_true(fabs(film->shutter.open - 0.125) < 1e-15);
     assert_true(fabs(film->shutter.close - 0.375) < 1e-15);
+    assert_true(film->shutter.error == 0.1);
     assert_true(film->sampling.error == 0.1 && film->sampling.seed_fixed);
     assert_int_equal(film->sampling.filter, ZT_FILTER_TENT);
     zt_animation_free(&animation);

@@ -295,6 +295,9 @@ static const struct {
      "0.008 s: "
      "[0, 1, 0], 0.0082 s: [1, 1, 0], 0.0084 s: [0, 1, 0], 1: [0, 1, 0] } }, material: {} }\n",
      5, 12, 0.3, 6},
+    {"coarse", "{ angle: 180 deg, error: 4 }", still_camera, WHEEL("3600 deg"), 2, 30, 4, 0},
+    {"fine", "{ angle: 180 deg, error: 0.02 }", still_camera, WHEEL("3600 deg"), 60, 600, 0.02,
+     0},
     {"before and after the frame", "{ angle: 360 deg, phase: -180 deg }", still_camera,
      WHEEL("720 deg"), 3, 20, 0.25, 0},
 };
@@ -311,7 +314,7 @@ static void curved_motion(void **state) {
                     error <= motions[i].bound && s.division.off <= 1;
         if (!well || getenv("ZT_TEST_PRINTS"))
             print_message("%s: %d moments, %.3g px off, said to be %.3g px\n", motions[i].name,
-                          count, error, s.division.off * ZT_CHORD_PIXELS);
+                          count, error, s.division.off * film->film.shutter.error);
         good &= well;
         zt_arena_free(&s.arena);
         zt_animation_free(&film);

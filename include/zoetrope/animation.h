@@ -21,6 +21,7 @@ typedef struct zt_animation zt_animation;
  * time from one frame to the next; the same where it opens for no time at all. */
 typedef struct zt_shutter {
     double open, close;
+    double error; /* how far, in pixels, anything may be off its curved way meanwhile */
 } zt_shutter;
 
 /* What the description says of the film as a whole. Frames are numbered 0 .. frame_count - 1.

@@ -107,10 +107,19 @@ static bool plain_number(double *value, const zt_node *node) {
            zt_text_number(value, node->text, node->text + strlen(node->text));
 }
 
+/* "50 mm", where that is the unit. */
+static bool number_with_unit(double *value, const zt_node *node, const char *unit) {
+    const char *written;
+    return unit && zt_read_quantity(value, &written, node) && zt_text_equal(written, unit);
+}
+
 bool zt_read_number(double *value, zt_mistakes *mistakes, const zt_node *node, const char *what,
                     zt_range range) {
-    if (plain_number(value, node)) return in_range(mistakes, node, what, *value, range);
-    zt_expected(mistakes, node, what, "a number");
+    if (plain_number(value, node) || number_with_unit(value, node, range.unit))
+        return in_range(mistakes, node, what, *value, range);
+    char expected[48] = "a number";
+    if (range.unit) snprintf(expected, sizeof expected, "a number, of %s", range.unit);
+    zt_expected(mistakes, node, what, expected);
     return false;
 }
 

@@ -40,6 +40,7 @@ typedef struct zt_range {
 
 static const zt_range zt_any_number = {-INFINITY, INFINITY, NULL};
 
+/* The range's unit may stand behind it. */
 bool zt_read_number(double *value, zt_mistakes *mistakes, const zt_node *node, const char *what,
                     zt_range range);
 bool zt_read_integer(int64_t *value, zt_mistakes *mistakes, const zt_node *node,

@@ -21,6 +21,11 @@ enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64, MAX_PER_MIN = 4 };
 /* A smaller error is none that can be estimated. */
 #define ERROR_LEAST 1e-6
 
+/* What moves may be off by a quarter of a pixel, or by what is said, but a number of moments
+ * has to do. */
+#define CHORD_ERROR 0.25
+#define CHORD_LEAST 0.01
+
 static void read_size(zt_film *film, zt_mistakes *mistakes, const zt_node *node) {
     int64_t size[2];
     if (node->kind != ZT_NODE_LIST || node->count != 2) {
@@ -59,12 +64,13 @@ static void read_duration(zt_film *film, zt_mistakes *mistakes, const zt_node *n
         film->frame_count = frames < 1 ? 1 : (int64_t)frames;
 }
 
-/* "shutter: 180 deg", or a mapping of "angle" and "phase": shares of the time of a frame, which
- * is a turn of 360 degrees. */
+/* "shutter: 180 deg", or a mapping of "angle", "phase", which become shares of the time of a
+ * frame, a turn of 360 degrees, and "error". */
 static void read_shutter(zt_shutter *shutter, zt_mistakes *mistakes, const zt_node *node) {
-    static const char *const names[] = {"angle", "phase"};
+    static const char *const names[] = {"angle", "phase", "error"};
     const double turn = 2 * 3.14159265358979323846;
-    const zt_range open = {0, 3600, "deg"}, any = {-3600, 3600, "deg"};
+    const zt_range open = {0, 3600, "deg"}, any = {-3600, 3600, "deg"},
+                   pixels = {CHORD_LEAST, 16, NULL};
     double angle = 0, phase = 0;
     if (node->kind != ZT_NODE_MAPPING) {
         zt_read_angle(&angle, mistakes, node, "shutter", open);
@@ -72,11 +78,13 @@ static void read_shutter(zt_shutter *shutter, zt_mistakes *mistakes, const zt_no
         zt_fields fields;
         zt_fields_open(&fields, mistakes, node, "shutter", names, COUNT(names));
         const zt_node *width = zt_field_required(&fields, mistakes, "angle", &node->place),
-                      *begin = zt_field(&fields, "phase");
+                      *begin = zt_field(&fields, "phase"), *error = zt_field(&fields, "error");
         if (width) zt_read_angle(&angle, mistakes, width, "angle", open);
         if (begin) zt_read_angle(&phase, mistakes, begin, "phase", any);
+        if (error) zt_read_number(&shutter->error, mistakes, error, "error", pixels);
     }
-    *shutter = (zt_shutter){phase / turn, (phase + angle) / turn};
+    shutter->open = phase / turn;
+    shutter->close = (phase + angle) / turn;
 }
 
 /* Whether something is written as a number, so that a number is meant. */
@@ -248,6 +256,7 @@ void zt_film_rest(zt_animation *animation) {
                                 .rate = {24, 1},
                                 .frame_count = 1,
                                 .view = ZT_VIEW_SRGB,
-                                .sampling = {.min = 1, .max = 1}};
+                                .sampling = {.min = 1, .max = 1},
+                                .shutter = {.error = CHORD_ERROR}};
     animation->rest.reflection_depth = 4;
 }

@@ -97,7 +97,7 @@ static void say_off(char *text, size_t size, const zt_division *d,
     const char *name = name_of(animation, d->worst);
     if (d->worst.is_place)
         snprintf(text, size, "%s is at most %.2g px off its way", name,
-                 d->off * ZT_CHORD_PIXELS);
+                 d->off * animation->film.shutter.error);
     else
         snprintf(text, size, "%s is at most %.2g %% off", name, d->off * ZT_CHORD_SHARE * 100);
 }

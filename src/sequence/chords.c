@@ -138,6 +138,7 @@ zt_status zt_chords_open(zt_chords *chords, zt_glance **first, const zt_animatio
     ZT_TRY(zt_animation_freeze(&scene, animation, time_s, arena, listener));
     *chords = (zt_chords){.animation = animation,
                           .height = height,
+                          .error = film->shutter.error,
                           .aspect = (double)film->width / film->height,
                           .origin = scene.camera.position,
                           .worlds = ZT_PUSH(arena, xform, (size_t)scene.object_count)};

@@ -6,9 +6,8 @@
 #include "base/arena.h"
 #include "keyframe/animation.h"
 
-/* What may be left: this much of a pixel. Of colors, intensities and reflectivity a share. */
-#define ZT_CHORD_PIXELS 0.25
-#define ZT_CHORD_SHARE  (1.0 / 512)
+/* What may be left, as a share, of colors, intensities and reflectivity. */
+#define ZT_CHORD_SHARE (1.0 / 512)
 
 /* Something that a track moves: a thing's place, its color, the camera's view ... */
 typedef struct zt_part zt_part;
@@ -17,6 +16,7 @@ typedef struct zt_part zt_part;
 typedef struct zt_chords {
     const zt_animation *animation;
     int height;     /* pixels */
+    double error;   /* how many of them places may be off */
     double aspect;  /* the picture's width over its height */
     vec3 origin;    /* all places are relative to it: the first moment's camera */
     double near;    /* how far from there the nearest surface is, at least about; */

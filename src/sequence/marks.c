@@ -124,10 +124,6 @@ double zt_marks_plane(vec3 *normal, const zt_plane *plane, const xform *world) {
 /* ---- what a glance allows -------------------------------------------------------------------
  */
 
-static double pixels_at(const zt_pixel *pixel, double distance) {
-    return ZT_CHORD_PIXELS * (pixel->width + pixel->angle * distance);
-}
-
 /* The eye and the width of pixels of a look, which its places are measured by. */
 typedef struct sight {
     const zt_chords *chords;
@@ -136,6 +132,11 @@ typedef struct sight {
     vec3 eye; /* relative to the origin */
     xform axes;
 } sight;
+
+/* As much of a pixel as things may be off, so far away. */
+static double pixels_at(const sight *s, double distance) {
+    return s->chords->error * (s->pixel.width + s->pixel.angle * distance);
+}
 
 static double mark_object(vec3 *marks, const zt_part *part, const sight *s) {
     const zt_object *object = &s->scene->objects[part->index];
@@ -148,13 +149,13 @@ static double mark_object(vec3 *marks, const zt_part *part, const sight *s) {
         xform block = part->anchor ? xform_mul(world, part->anchor) : xform_identity();
         if (part->anchor) put_corners(marks + 2, &block);
         double away = fabs(distance - vec3_dot(normal, s->eye));
-        return pixels_at(&s->pixel, fmax(away, ZT_MARK_NEAREST * part->reach));
+        return pixels_at(s, fmax(away, ZT_MARK_NEAREST * part->reach));
     }
     vec3 center;
     int count = zt_marks_of_object(marks, object, world, s->scene->meshes);
     double radius = zt_marks_ball(&center, marks, count);
     double distance = vec3_length(vec3_sub(center, s->eye));
-    double allowed = pixels_at(&s->pixel, fmax(distance - radius, ZT_MARK_NEAREST * radius));
+    double allowed = pixels_at(s, fmax(distance - radius, ZT_MARK_NEAREST * radius));
     return fmax(allowed, ZT_MARK_ROUNDINGS * (distance + radius));
 }
 
@@ -170,8 +171,7 @@ static double mark_lamp(vec3 *marks, const zt_part *part, const sight *s) {
     xform block = xform_place(place, turns ? light->rotation : quat_identity(), size);
     put_corners(marks, &block);
     double distance = vec3_length(vec3_sub(place, s->eye));
-    return fmax(pixels_at(&s->pixel, fmax(distance, s->chords->near)),
-                ZT_MARK_ROUNDINGS * distance);
+    return fmax(pixels_at(s, fmax(distance, s->chords->near)), ZT_MARK_ROUNDINGS * distance);
 }
 
 static double largest_of(vec3 v, double share) { return vec3_max_abs(v) * share; }
@@ -196,7 +196,7 @@ static double mark_view(vec3 *marks, const sight *s) {
     const xform *axes = &s->axes;
     if (camera->lens == ZT_LENS_EQUIRECTANGULAR) {
         marks[0] = axes->x, marks[1] = axes->y, marks[2] = marks[3] = marks[4] = axes->z;
-        return ZT_CHORD_PIXELS * s->pixel.angle;
+        return s->chords->error * s->pixel.angle;
     }
     double half = zt_camera_half_height(camera);
     vec3 right = vec3_scale(axes->x, half * s->chords->aspect), up = vec3_scale(axes->y, half);
@@ -206,7 +206,7 @@ static double mark_view(vec3 *marks, const sight *s) {
         if (!parallel) marks[i] = vec3_sub(marks[i], axes->z);
     }
     marks[4] = vec3_scale(axes->z, parallel ? s->chords->far : 1);
-    return ZT_CHORD_PIXELS * (parallel ? s->pixel.width : s->pixel.angle);
+    return s->chords->error * (parallel ? s->pixel.width : s->pixel.angle);
 }
 
 /* The aperture's two half axes; and the same as they are seen from where it is sharp, all as
@@ -223,7 +223,7 @@ static double mark_opening(vec3 *marks, const sight *s) {
         marks[i] = vec3_scale(axis, radius);
         marks[i + 2] = radius > 0 ? vec3_scale(axis, radius / focus * seen) : axis;
     }
-    return pixels_at(&s->pixel, s->chords->near);
+    return pixels_at(s, s->chords->near);
 }
 
 static double mark_part(vec3 *marks, const zt_part *part, const sight *s) {
@@ -240,8 +240,7 @@ static double mark_part(vec3 *marks, const zt_part *part, const sight *s) {
         return mark_value(marks, part, s);
     case ZT_PART_EYE:
         *marks = s->eye;
-        return fmax(pixels_at(&s->pixel, s->chords->near),
-                    ZT_MARK_ROUNDINGS * vec3_max_abs(s->eye));
+        return fmax(pixels_at(s, s->chords->near), ZT_MARK_ROUNDINGS * vec3_max_abs(s->eye));
     case ZT_PART_VIEW:
         return mark_view(marks, s);
     case ZT_PART_OPENING:

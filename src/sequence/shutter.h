@@ -24,8 +24,8 @@ typedef struct zt_division {
 /* What the scene is while the shutter is open for a frame, for a picture so many pixels high.
  *
  * The opening is bisected at multiples of 1/ZT_TIME_CELLS until, between two moments, nothing
- * leaves the straight way by more than ZT_CHORD_PIXELS as the camera sees it, and no color by
- * more than ZT_CHORD_SHARE; so it was found at some points of time between them, spread
+ * leaves the straight way by more than the shutter's error as the camera sees it, and no color
+ * by more than ZT_CHORD_SHARE; so it was found at some points of time between them, spread
  * unevenly, at least three. What moves less than can be seen is still. What changes at once is
  * shut in between two neighboring multiples. Scenes that take too much memory, and what is too
  * fast for neighboring multiples, end it earlier, which `division` tells. Fails as
