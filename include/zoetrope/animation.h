@@ -32,6 +32,7 @@ typedef struct zt_film {
     int64_t frame_count; /* at least 1 */
     zt_view view;
     zt_sampling sampling;
+    bool transparent; /* A is how much of a pixel is covered; else 1 everywhere */
     zt_shutter shutter;
     const char *audio; /* the path of its sound, or NULL; the animation's own */
     unsigned aovs;     /* bits of zt_aov (zoetrope/aov.h) that images have besides R G B A */

@@ -53,11 +53,14 @@ typedef struct zt_channel {
 } zt_channel;
 
 /* Linear light, Rec. 709 primaries, float. `pixels` holds height * width * 4 numbers, rows from
- * the top, each pixel R G B A: colours are multiplied by A, how much of the pixel is covered: 1
- * of all that is rendered. */
+ * the top, each pixel R G B A: colours are multiplied by A, how much of the pixel is covered:
+ * by what was rendered of a transparent background, else 1. Filters that are negative somewhere
+ * take A a little out of 0..1, as they do colours, so that over another picture,
+ * R + (1 - A) * R of that one, it is as if that had been the background. */
 typedef struct zt_image {
     int width, height;
     float *pixels;
+    bool transparent; /* A was asked for: files have it even where it is 1 everywhere */
     zt_channel channels[ZT_IMAGE_CHANNELS_MAX];
     int channel_count;
     zt_image_info info;

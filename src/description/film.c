@@ -217,10 +217,11 @@ static zt_status read_audio(zt_reading *reading, const zt_node *node, const char
 zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *directory) {
     static const char *const names[] = {
         "size",   "rate",    "duration", "view",    "shading", "reflections", "samples",
-        "filter", "quality", "seed",     "shutter", "audio",   "aovs"};
+        "filter", "quality", "seed",     "shutter", "audio",   "aovs",        "background"};
     const char *views[ZT_VIEW_COUNT];
     for (int v = 0; v < ZT_VIEW_COUNT; v++) views[v] = zt_view_name((zt_view)v);
     static const char *const shadings[] = {"classic"};
+    static const char *const backgrounds[] = {"opaque", "transparent"};
     zt_mistakes *mistakes = &reading->mistakes;
     zt_film *film = &reading->animation->film;
     zt_fields fields;
@@ -231,7 +232,8 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
                   *view = zt_field(&fields, "view"), *shading = zt_field(&fields, "shading"),
                   *reflections = zt_field(&fields, "reflections"),
                   *shutter = zt_field(&fields, "shutter"), *audio = zt_field(&fields, "audio"),
-                  *aovs = zt_field(&fields, "aovs");
+                  *aovs = zt_field(&fields, "aovs"),
+                  *background = zt_field(&fields, "background");
     int choice;
     int64_t number;
     if (size) read_size(film, mistakes, size);
@@ -246,6 +248,9 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
         reading->animation->rest.reflection_depth = (int32_t)number;
     if (shutter) read_shutter(&film->shutter, mistakes, shutter);
     if (aovs) read_aovs(&film->aovs, mistakes, aovs);
+    if (background && zt_read_choice(&choice, mistakes, background, "background", backgrounds,
+                                     COUNT(backgrounds)))
+        film->transparent = choice == 1;
     read_sampling(&film->sampling, mistakes, &fields);
     return audio ? read_audio(reading, audio, directory) : ZT_OK;
 }

@@ -88,9 +88,11 @@ void add_particulars(OIIO::ImageSpec &spec, const zt_image_wishes *w) {
         spec.attribute("DateTime", date_unknown);
 }
 
-/* Whether the image has an A that says something, and the format a place for it. */
+/* Whether the image has an A that says something or was asked for, and the format a place for
+ * it. */
 bool needs_alpha(const zt_image *image, const zt_image_wishes *w) {
     size_t value_count = size_t(image->width) * size_t(image->height) * 4;
+    if (image->transparent) return w->format->has_alpha;
     for (size_t i = 3; w->format->has_alpha && i < value_count; i += 4)
         if (image->pixels[i] != 1) return true;
     return false;

@@ -82,9 +82,9 @@ void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row) {
     canvas->waiting[canvas->waiting_count++] = (zt_waiting){slot, 0};
 }
 
-void zt_canvas_mean(double mean[3], const zt_canvas_sum *positive,
+void zt_canvas_mean(double mean[4], const zt_canvas_sum *positive,
                     const zt_canvas_sum *negative) {
-    double sign = 1, r = positive->r, g = positive->g, b = positive->b;
+    double sign = 1, r = positive->r, g = positive->g, b = positive->b, a = positive->a;
     int32_t count = positive->taken;
     if (negative && negative->taken > 0) {
         int32_t all = count + negative->taken;
@@ -93,29 +93,34 @@ void zt_canvas_mean(double mean[3], const zt_canvas_sum *positive,
         r += sign * negative->r;
         g += sign * negative->g;
         b += sign * negative->b;
+        a += sign * negative->a;
     }
     mean[0] = count ? r / count : 0;
     mean[1] = count ? g / count : 0;
     mean[2] = count ? b / count : 0;
+    mean[3] = count ? a / count : 0;
 }
 
 float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum negative[2]) {
-    double r = 0, g = 0, b = 0, square = 0, count[2], mean[2][3];
+    double r = 0, g = 0, b = 0, a = 0, square = 0, count[2], mean[2][4];
     for (int i = 0; i < 2; i++) {
         const zt_canvas_sum *p = &positive[i], *n = &negative[i];
         r += p->r + n->r;
         g += p->g + n->g;
         b += p->b + n->b;
+        a += p->a + n->a;
         square += p->square + n->square;
         count[i] = p->taken + n->taken;
     }
     if (count[0] == 0 || count[1] == 0) return 0;
     double all = count[0] + count[1];
-    double spread = square - (r * r + g * g + b * b) / all; /* all - 1 times the variance */
+    /* all - 1 times the variance */
+    double spread = square - (r * r + g * g + b * b + 3 * a * a) / all;
     if (spread < 1e-12 * square) return 0; /* all are the same, but for roundings here */
     for (int i = 0; i < 2; i++) zt_canvas_mean(mean[i], &positive[i], &negative[i]);
     double apart = 0;
-    for (int k = 0; k < 3; k++) apart += (mean[0][k] - mean[1][k]) * (mean[0][k] - mean[1][k]);
+    for (int k = 0; k < 4; k++)
+        apart += (k < 3 ? 1 : 3) * (mean[0][k] - mean[1][k]) * (mean[0][k] - mean[1][k]);
     apart *= count[0] * count[1] / (all * all);
     double left = spread / ((all - 1) * all * sqrt(all));
     return (float)((apart > left ? apart : left) / 3);

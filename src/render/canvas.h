@@ -15,7 +15,8 @@
  * of equal samples adds up to exactly so many times one of them. */
 typedef struct zt_canvas_sum {
     double r, g, b;
-    double square; /* the sum of r^2 + g^2 + b^2 */
+    double a;      /* where alpha is asked for: how many met something; else 0 */
+    double square; /* the sum of r^2 + g^2 + b^2 + 3 a^2 */
     int32_t taken;
 } zt_canvas_sum;
 
@@ -56,6 +57,7 @@ typedef struct zt_canvas_sums {
         alignas(64) double r[ZT_BATCH];
         alignas(64) double g[ZT_BATCH];
         alignas(64) double b[ZT_BATCH];
+        alignas(64) double a[ZT_BATCH];
         alignas(64) double square[ZT_BATCH];
         alignas(64) int32_t taken[ZT_BATCH];
     } positive[2], negative[2];
@@ -78,14 +80,14 @@ void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row);
 void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row);
 void zt_canvas_added_all(zt_canvas *canvas);
 
-/* The mean of some samples, of which those of `negative` (may be NULL) count negatively; black
- * without any. Where what is left of the count is so little that noise would explode, all count
+/* The mean of some samples, R G B A, of which those of `negative` (may be NULL) count
+ * negatively; all 0 without any. Where what is left of the count is so little that noise would explode, all count
  * alike. */
-void zt_canvas_mean(double mean[3], const zt_canvas_sum *positive,
+void zt_canvas_mean(double mean[4], const zt_canvas_sum *positive,
                     const zt_canvas_sum *negative);
 
 /* The squared standard error of the mean of all samples of two independent sets, on average of
- * red, green and blue: from the difference of their means; but no less than what the points of
+ * red, green and blue, with that of alpha, which is one of each over white: from the difference of their means; but no less than what the points of
  * samples, which are well spread, leave of a step's variance: a share of n^(-3/2) for n
  * samples. Halves that are both well spread often agree on a step through the pixel, and both
  * be wrong. */

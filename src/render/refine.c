@@ -47,10 +47,21 @@ ZT_CLONES static int add_samples(struct zt_canvas_half *restrict sum,
     return left_out;
 }
 
+/* Adds which of those samples met something. */
+ZT_CLONES static void add_cover(struct zt_canvas_half *restrict sum,
+                                const zt_radiance *restrict light, int first, int count) {
+    for (int i = 0; i < count; i++) {
+        bool finite = zt_finite3(light->r[first + i], light->g[first + i], light->b[first + i]);
+        double a = finite ? (double)light->a[first + i] : 0;
+        sum->a[i] += a;
+        sum->square[i] += 3 * a;
+    }
+}
+
 /* Moves the samples that count negatively out of a batch's light to the sums of those: what is
  * left there adds nothing, being no number. */
 static int take_negative(struct zt_canvas_half *sum, zt_radiance *light, const float *weight,
-                         int first, int count) {
+                         int first, int count, bool transparent) {
     int moved = 0;
     for (int i = 0; i < count; i++) {
         float r = light->r[first + i], g = light->g[first + i], b = light->b[first + i];
@@ -59,6 +70,10 @@ static int take_negative(struct zt_canvas_half *sum, zt_radiance *light, const f
         sum->g[i] += (double)g;
         sum->b[i] += (double)b;
         sum->square[i] += square3(r, g, b);
+        if (transparent) {
+            sum->a[i] += (double)light->a[first + i];
+            sum->square[i] += 3 * (double)light->a[first + i];
+        }
         sum->taken[i]++;
         light->r[first + i] = NAN;
         moved++;
@@ -118,6 +133,7 @@ static void trace(zt_frame *f, zt_render_thread *own, int count, int now) {
         turn(own->light.g, now, count);
         turn(own->light.b, now, count);
         turn(own->light.path, now, count);
+        if (f->job->transparent) turn(own->light.a, now, count);
     }
 }
 
@@ -135,19 +151,23 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
         int half = done + k >= first_half;
         if (j->is_signed)
             own->count.left_out -= take_negative(&own->sums.negative[half], &own->light,
-                                                 own->places.weight, k * count, count);
+                                                 own->places.weight, k * count, count,
+                                                 f->job->transparent);
         own->count.left_out +=
             add_samples(&own->sums.positive[half], &own->light, k * count, count);
+        if (f->job->transparent)
+            add_cover(&own->sums.positive[half], &own->light, k * count, count);
     }
 }
 
 static zt_canvas_sum sum_at(const struct zt_canvas_half *half, int i) {
-    return (zt_canvas_sum){half->r[i], half->g[i], half->b[i], half->square[i], half->taken[i]};
+    return (zt_canvas_sum){half->r[i], half->g[i],      half->b[i],
+                           half->a[i], half->square[i], half->taken[i]};
 }
 
 static zt_canvas_sum both(zt_canvas_sum a, zt_canvas_sum b) {
-    return (zt_canvas_sum){a.r + b.r, a.g + b.g, a.b + b.b, a.square + b.square,
-                           a.taken + b.taken};
+    return (zt_canvas_sum){a.r + b.r, a.g + b.g,           a.b + b.b,
+                           a.a + b.a, a.square + b.square, a.taken + b.taken};
 }
 
 /* What a slot has taken in the round becomes its own, and says how far off it is. */
@@ -180,6 +200,7 @@ static void sample_group(const round_job *j, zt_render_thread *own, const int32_
     memset(own->sums.positive, 0, sizeof own->sums.positive);
     if (j->is_signed) memset(own->sums.negative, 0, sizeof own->sums.negative);
     own->rays.wants_path = j->frame->at_edges;
+    own->rays.wants_cover = j->frame->job->transparent;
     int together = ZT_BATCH / count;
     for (int done = 0; done < j->more; done += together) {
         if (zt_frame_stopped(j->frame)) return;
@@ -284,11 +305,11 @@ static void write_task(void *user, int task, int worker) {
     int32_t end = min_int((task + 1) * DECISIONS, canvas->slot_count);
     for (int32_t i = task * DECISIONS; i < end; i++) {
         const zt_slot *s = &canvas->slots[i];
-        double mean[3];
+        double mean[4];
         zt_canvas_mean(mean, &s->sum, j->is_signed ? &canvas->negative[i] : NULL);
         float *to = j->frame->image->pixels + 4 * zt_canvas_pixel(canvas, s->column, s->row);
-        for (int k = 0; k < 3; k++) to[k] = (float)mean[k];
-        to[3] = 1;
+        for (int k = 0; k < 4; k++) to[k] = (float)mean[k];
+        if (!j->frame->job->transparent) to[3] = 1;
     }
 }
 

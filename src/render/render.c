@@ -93,6 +93,15 @@ ZT_CLONES static int add_samples(zt_radiance *restrict sum, int32_t *restrict ta
     return left_out;
 }
 
+/* Adds which of those samples met something. */
+ZT_CLONES static void add_cover(zt_radiance *restrict sum, const zt_radiance *restrict light,
+                                int first, int count) {
+    for (int i = 0; i < count; i++) {
+        bool finite = zt_finite3(light->r[first + i], light->g[first + i], light->b[first + i]);
+        sum->a[i] += finite ? light->a[first + i] : 0;
+    }
+}
+
 /* Makes the sums the means. */
 ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict taken,
                               int count) {
@@ -104,11 +113,19 @@ ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict
     }
 }
 
+/* The mean of what was added, 1 where all samples met something. */
+static void find_alpha(float *restrict alpha, const int32_t *restrict taken, int count,
+                       bool transparent) {
+    for (int i = 0; i < count; i++)
+        alpha[i] = !transparent ? 1 : taken[i] ? alpha[i] / (float)taken[i] : 0;
+}
+
 /* Four pixels, a line of a cache, past the caches: a picture that does not fit there is written
  * without being read before. */
-static inline void stream_run(float *to, const float *r, const float *g, const float *b) {
+static inline void stream_run(float *to, const float *r, const float *g, const float *b,
+                              const float *a) {
 #if defined __SSE__
-    __m128 x = _mm_load_ps(r), y = _mm_load_ps(g), z = _mm_load_ps(b), w = _mm_set1_ps(1);
+    __m128 x = _mm_load_ps(r), y = _mm_load_ps(g), z = _mm_load_ps(b), w = _mm_load_ps(a);
     _MM_TRANSPOSE4_PS(x, y, z, w);
     _mm_stream_ps(to, x);
     _mm_stream_ps(to + 4, y);
@@ -116,7 +133,7 @@ static inline void stream_run(float *to, const float *r, const float *g, const f
     _mm_stream_ps(to + 12, w);
 #else
     for (int k = 0; k < RUN; k++)
-        memcpy(to + 4 * k, (float[4]){r[k], g[k], b[k], 1}, 4 * sizeof(float));
+        memcpy(to + 4 * k, (float[4]){r[k], g[k], b[k], a[k]}, 4 * sizeof(float));
 #endif
 }
 
@@ -127,10 +144,10 @@ static void fill_pixels(float *restrict pixels, int width, const zt_radiance *re
     bool runs = whole && width % RUN == 0;
     for (int i = 0; runs && i < count; i += RUN)
         stream_run(pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]),
-                   sum->r + i, sum->g + i, sum->b + i);
+                   sum->r + i, sum->g + i, sum->b + i, sum->a + i);
     for (int i = 0; !runs && i < count; i++) {
         float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
-        memcpy(to, (float[4]){sum->r[i], sum->g[i], sum->b[i], 1}, 4 * sizeof(float));
+        memcpy(to, (float[4]){sum->r[i], sum->g[i], sum->b[i], sum->a[i]}, 4 * sizeof(float));
     }
 }
 
@@ -151,7 +168,9 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     if (count == 0) return true;
     memset(&own->sum, 0, offsetof(zt_radiance, path));
     memset(own->taken, 0, sizeof own->taken);
+    if (job->transparent) memset(own->sum.a, 0, sizeof own->sum.a);
     own->rays.wants_path = f->at_edges;
+    own->rays.wants_cover = job->transparent;
     int together = ZT_BATCH / count;
     for (int done = 0; done < samples; done += together) {
         if (job->stopped && job->stopped(job->user)) return false;
@@ -160,11 +179,14 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
             zt_samples_take(&own->places, &own->rays, job, own->column, own->row, k * count,
                             count, f->at_edges ? ZT_SAMPLE_MIDDLE : done + k);
         zt_frame_trace(f, own, now * count);
-        for (int k = 0; k < now; k++)
+        for (int k = 0; k < now; k++) {
             own->count.left_out +=
                 add_samples(&own->sum, own->taken, &own->light, k * count, count);
+            if (job->transparent) add_cover(&own->sum, &own->light, k * count, count);
+        }
     }
     average(&own->sum, own->taken, count);
+    find_alpha(own->sum.a, own->taken, count, job->transparent);
     fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
                 count == most);
     if (f->at_edges)
@@ -255,6 +277,7 @@ zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job
     int columns = (image->width + TILE_SIDE - 1) / TILE_SIDE;
     int rows = (image->height + TILE_SIDE - 1) / TILE_SIDE;
     int thread_count = zt_pool_thread_count(pool);
+    image->transparent = job->transparent;
     zt_frame f = {.image = image,
                   .job = job,
                   .work = work,

@@ -25,6 +25,7 @@ typedef struct zt_render_job {
     const zt_ready *scene;
     const zt_lens *lens;
     zt_sampling sampling;
+    bool transparent; /* A is how many samples met something, as colours count; else 1 */
     const zt_warp *warp; /* the sampling's filter made ready */
     const zt_thin
         *thin; /* where edges are looked for; or NULL: thin things are missed by luck */

@@ -51,10 +51,13 @@ zt_status zt_renderer_key(zt_hash *key, zt_renderer *r, int64_t frame) {
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&exposure, &division, r->animation, frame, r->format.height,
                              &r->frame, r->listener));
-    const double numbers[] = {
-        r->format.width, r->format.height, r->precision, r->aovs, s.min,
-        s.max,           s.error,          s.mean_max,   s.edges, s.filter,
-        s.filter_width,  s.seed,           s.seed_fixed};
+    const double numbers[] = {r->format.width, r->format.height,
+                              r->precision,    r->aovs,
+                              s.min,           s.max,
+                              s.error,         s.mean_max,
+                              s.edges,         s.filter,
+                              s.filter_width,  s.seed,
+                              s.seed_fixed,    r->animation->film.transparent};
     const zt_hash parts[] = {zt_hash_bytes(arithmetic, sizeof arithmetic),
                              zt_hash_bytes(numbers, sizeof numbers), r->held,
                              zt_shutter_content(&exposure)};

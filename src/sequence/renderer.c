@@ -87,7 +87,10 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
                           r->meshes, &r->frame));
     ZT_TRY(
         zt_lens_prepare(&t->lens, &t->exposure, r->format.width, r->format.height, &r->frame));
-    t->job = (zt_render_job){.scene = &t->ready, .lens = t->lens, .sampling = r->sampling};
+    t->job = (zt_render_job){.scene = &t->ready,
+                             .lens = t->lens,
+                             .sampling = r->sampling,
+                             .transparent = r->animation->film.transparent};
     ZT_TRY(zt_warp_prepare(&t->job.warp, &r->sampling, &r->frame));
     if (r->sampling.edges)
         ZT_TRY(zt_thin_prepare(&t->job.thin, &t->exposure, r->format.width, r->format.height,

@@ -3,6 +3,7 @@
 #include <zoetrope/replay.h>
 
 #include <math.h>
+#include <string.h>
 
 #include "base/diag.h"
 #include "keyframe/advice.h"
@@ -228,7 +229,7 @@ zt_status zt_renderer_replay_sample(zt_renderer *r, int64_t frame, int column, i
 }
 
 /* All samples of the pixel, and the mean of those that are finite. */
-static zt_status take_all(double mean[3], replaying *p, int count) {
+static zt_status take_all(double rgb[3], replaying *p, int count) {
     bool middle = count == 1 && p->taking.job.sampling.edges;
     zt_canvas_sum positive = {0}, negative = {0};
     for (int i = 0; i < count; i++) {
@@ -242,7 +243,9 @@ static zt_status take_all(double mean[3], replaying *p, int count) {
         sum->b += (double)light[2];
         sum->taken++;
     }
+    double mean[4];
     zt_canvas_mean(mean, &positive, &negative);
+    memcpy(rgb, mean, 3 * sizeof *rgb);
     return ZT_OK;
 }
 

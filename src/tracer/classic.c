@@ -370,6 +370,12 @@ static zt_bundle bundle_around(const work *w, zt_box origins, int32_t source) {
                        .source = source};
 }
 
+/* Which of the first rays met something: all of them are still there. */
+static void deliver_cover(zt_radiance *restrict light, const work *restrict w) {
+    int padded = zt_batch_padded(w->rays.count);
+    WIDE_LOOP for (int i = 0; i < padded; i++) light->a[i] = w->rays.hit[i] < 0 ? 0 : 1;
+}
+
 static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
                   void *memory) {
     work *w = memory;
@@ -385,6 +391,7 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
         zt_bundle bundle = bundle_around(w, around, w->points.source);
         *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
         intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
+        if (given->wants_cover && depth == 0) deliver_cover(light, w);
         keep_hits(w, tracer);
         if (w->rays.count == 0) return;
         if (given->wants_path) begin_paths(w);

@@ -34,7 +34,8 @@ typedef struct zt_rays {
     alignas(64) uint32_t key[ZT_BATCH];
     alignas(64) uint32_t sample[ZT_BATCH];
     int count;
-    bool wants_path; /* whether zt_radiance.path is asked for */
+    /* Which of zt_radiance are asked for besides the light. */
+    bool wants_path, wants_cover;
 } zt_rays;
 
 /* How many rays of each kind were traced. */
@@ -51,6 +52,7 @@ typedef struct zt_radiance {
      * rays met the same things, of those with edges the same faces and of patterns the same
      * cells, and the same lamps are hidden from there. */
     alignas(64) uint32_t path[ZT_BATCH];
+    alignas(64) float a[ZT_BATCH]; /* where asked for: 1 of a ray that met something, or 0 */
     zt_ray_counts counts; /* added to */
 } zt_radiance;
 
