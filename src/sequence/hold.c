@@ -66,6 +66,28 @@ static zt_status take_lock(const zt_hold *h, zt_lock *lock, int kind, const char
     }
 }
 
+/* How much of a path there is already, of which the rest are directories that it needs. */
+static size_t existing_length(const char *path) {
+    size_t length = 0;
+    for (const char *slash = strchr(path, '/'); slash; slash = strchr(slash + 1, '/')) {
+        char *directory = strndup(path, (size_t)(slash - path));
+        bool there = !directory || !*directory || access(directory, F_OK) == 0;
+        free(directory);
+        if (!there) break;
+        length = (size_t)(slash - path);
+    }
+    return length;
+}
+
+/* Directories that were made and in which nothing came are removed again. */
+static void remove_empty(char *path, size_t existing) {
+    for (char *slash = strrchr(path, '/'); slash && (size_t)(slash - path) > existing;
+         slash = strrchr(path, '/')) {
+        *slash = '\0';
+        if (rmdir(path) != 0) return;
+    }
+}
+
 /* The last one that shares it removes it. */
 static void let_go(zt_lock *lock) {
     if (lock->path && lock->file >= 0) {
@@ -136,6 +158,7 @@ zt_status zt_hold_open(zt_hold *h, const char *target, int64_t part, int64_t par
     h->whole.path = zt_text_print("%s.lock", target);
     h->done_path = zt_text_print("%s.done", target);
     zt_status status = h->whole.path && h->done_path ? ZT_OK : ZT_EMEMORY;
+    if (h->done_path) h->existing_length = existing_length(h->done_path);
     if (status == ZT_OK)
         status = take_lock(h, &h->whole, part_count > 0 ? LOCK_SH : LOCK_EX, target);
     if (status == ZT_OK && part_count > 0) status = take_part(h, target, part, part_count);
@@ -170,6 +193,7 @@ zt_status zt_hold_close(zt_hold *h) {
     if (h->done_path && h->done >= 0 && close(h->done) != 0) status = fail(h, h->done_path);
     let_go(&h->part);
     let_go(&h->whole);
+    if (h->done_path) remove_empty(h->done_path, h->existing_length);
     free(h->done_path);
     free(h->records);
     *h = (zt_hold){0};

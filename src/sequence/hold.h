@@ -16,7 +16,8 @@ typedef struct zt_lock {
 typedef struct zt_hold {
     zt_lock whole, part; /* the target's, shared by its parts; and that of a part */
     char *done_path;
-    int done; /* a file; -1: none */
+    int done;               /* a file; -1: none */
+    size_t existing_length; /* of the path's beginning that was there before */
     zt_listener listener;
     zt_output_record *records; /* of earlier runs; owned */
     int64_t record_count;
@@ -30,7 +31,8 @@ zt_status zt_hold_open(zt_hold *hold, const char *target, int64_t part, int64_t 
 /* Remembers what was completed, by one write at the end of the file; `user` is the hold. */
 zt_status zt_hold_record(void *user, const zt_output_record *record);
 
-/* Nothing happens to a hold of zeros. */
+/* Lets go, and removes directories that were made for it and are empty. Nothing happens to a
+ * hold of zeros. */
 zt_status zt_hold_close(zt_hold *hold);
 
 #endif
