@@ -94,28 +94,6 @@ void zt_manifest_settings(zt_render_settings *settings, const zt_manifest *m) {
 /* ---- writing --------------------------------------------------------------------------------
  */
 
-static void print_text(FILE *file, const char *text) {
-    putc('"', file);
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            fprintf(file, "\\%c", *c);
-        else if (*c < 32)
-            fprintf(file, "\\u%04x", *c);
-        else
-            putc(*c, file);
-    }
-    putc('"', file);
-}
-
-/* With as many digits as tell it from all others. */
-static void print_number(FILE *file, double number) {
-    char text[32];
-    int digits = 3;
-    do snprintf(text, sizeof text, "%.*g", digits, number);
-    while (digits++ < 17 && strtod(text, NULL) != number);
-    fputs(text, file);
-}
-
 static void print_frame(FILE *file, const zt_manifest_frame *f) {
     fprintf(file, "    {\"frame\": %" PRId64 ", ", f->frame);
     if (f->min == f->max) {
@@ -123,14 +101,14 @@ static void print_frame(FILE *file, const zt_manifest_frame *f) {
         return;
     }
     fprintf(file, "\"min\": %" PRId32 ", \"max\": %" PRId32 ", \"error\": ", f->min, f->max);
-    print_number(file, f->error);
+    zt_json_print_number(file, f->error);
     if (f->mean_max > 0) fprintf(file, ", \"mean_max\": %" PRId32, f->mean_max);
     putc('}', file);
 }
 
 static bool print(FILE *file, const zt_manifest *m, const char *description) {
     fputs("{\n  \"zoetrope\": 1,\n  \"description\": ", file);
-    print_text(file, description);
+    zt_json_print_text(file, description);
     fprintf(file, ",\n  \"size\": [%d, %d],\n  \"precision\": \"%s\",\n  \"frames\": [\n",
             m->width, m->height, precisions[m->precision]);
     for (size_t i = 0; i < m->count; i++) {
