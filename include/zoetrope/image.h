@@ -29,7 +29,7 @@ const char *zt_view_name(zt_view view);
 enum { ZT_IMAGE_SIDE_MAX = 65536, ZT_IMAGE_CHANNELS_MAX = 24 };
 
 /* What an image is of, for those who work on with it; files hold as much of it as their format
- * can. Texts are not the image's own, and NULL where they are not known. */
+ * can. Texts are NULL where they are not known, and not the image's own, unless it was read. */
 typedef struct zt_image_info {
     bool known; /* else the rest says nothing */
     int64_t frame;
@@ -64,6 +64,7 @@ typedef struct zt_image {
     zt_channel channels[ZT_IMAGE_CHANNELS_MAX];
     int channel_count;
     zt_image_info info;
+    char *texts; /* those of the info, of an image that was read; else NULL */
 } zt_image;
 
 /* Makes a black, opaque image. ZT_EARGUMENT where a side is not in 1..ZT_IMAGE_SIDE_MAX. */
@@ -72,7 +73,9 @@ void zt_image_free(zt_image **image);
 
 /* Reads an image file's numbers as they are stored: an OpenEXR file's linear light exactly,
  * integers as 0..1 with no transfer function undone; grey as R = G = B, A = 1 where the file
- * has none. The caller frees the image. ZT_EFILE after telling why. */
+ * has none. What it is of is known where an OpenEXR, PNG or TIFF file that was written here
+ * says so, but for matrices and the time it took. The caller frees the image. ZT_EFILE after
+ * telling why. */
 zt_status zt_image_read(zt_image **image, const char *path, zt_listener listener);
 
 /* Adds a channel of zeros, which asks rendering to fill it where it knows the name

@@ -6,8 +6,6 @@
 #include "image/file.h"
 
 #include <cfloat>
-#include <cinttypes>
-#include <cstdio>
 #include <memory>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +19,7 @@ extern "C" {
 #include "base/diag.h"
 #include "base/module.h"
 #include "image/develop.h"
+#include "image/info.h"
 }
 
 namespace {
@@ -65,26 +64,31 @@ std::string compression_of(const zt_image_wishes *w) {
     return w->compression->highest ? name + ":" + std::to_string(w->level) : name;
 }
 
+/* By the first of its endings. */
+bool is_format(const zt_image_wishes *w, const char *ending) {
+    return strcmp(w->format->endings[0], ending) == 0;
+}
+
 /* What is particular to a format. The names are OpenImageIO's. */
 void add_particulars(OIIO::ImageSpec &spec, const zt_image_wishes *w) {
-    std::string format = w->format->endings[0];
     if (w->compression) spec.attribute("compression", compression_of(w));
-    if (format == ".tif") {
+    if (is_format(w, ".tif")) {
         spec.attribute("compression", w->compression->name);
         spec.attribute("tiff:zipquality", w->level);
         spec.attribute("tiff:Predictor", spec.format == OIIO::TypeDesc::FLOAT ? 3 : 2);
         /* With Exif, OpenImageIO 2.4 leaves its block as the file's first directory, and no one
          * can read the picture. */
         spec.attribute("tiff:write_exif", 0);
-    } else if (format == ".jpg") {
+    } else if (is_format(w, ".jpg")) {
         spec.attribute("jpeg:subsampling", "4:4:4");
-    } else if (format == ".png") {
+    } else if (is_format(w, ".png")) {
         /* Differences to the left neighbour (8 is "none", 16 "sub"): a third of the time of
          * the default, for files that are a fifth larger. */
         spec.attribute("png:compressionLevel", w->level);
         spec.attribute("png:filter", 16);
     }
-    if (format == ".exr" || format == ".tif" || format == ".dpx" || format == ".hdr")
+    if (is_format(w, ".exr") || is_format(w, ".tif") || is_format(w, ".dpx") ||
+        is_format(w, ".hdr"))
         spec.attribute("DateTime", date_unknown);
 }
 
@@ -98,13 +102,11 @@ bool needs_alpha(const zt_image *image, const zt_image_wishes *w) {
     return false;
 }
 
-bool is_exr(const zt_image_wishes *w) { return strcmp(w->format->endings[0], ".exr") == 0; }
-
 /* Whether colours are stored as they are where a pixel is covered, not multiplied by A. Formats
  * that say which of the two it is have it so for integers; DPX does not say, and shows the
  * picture over black. */
 bool unassociated(const zt_image_wishes *w) {
-    return w->depth < ZT_DEPTH_HALF && strcmp(w->format->endings[0], ".dpx") != 0;
+    return w->depth < ZT_DEPTH_HALF && !is_format(w, ".dpx");
 }
 
 /* R G B, A where it says something, and in OpenEXR all further channels, as float. */
@@ -115,19 +117,13 @@ void add_channels(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_w
         spec.channelnames.push_back("A");
         if (unassociated(w)) spec.attribute("oiio:UnassociatedAlpha", 1);
     }
-    if (!is_exr(w) || image->channel_count == 0) return;
+    if (!is_format(w, ".exr") || image->channel_count == 0) return;
     spec.channelformats.assign(size_t(spec.nchannels), spec.format);
     for (int c = 0; c < image->channel_count; c++) {
         spec.channelnames.push_back(image->channels[c].name);
         spec.channelformats.push_back(OIIO::TypeDesc::FLOAT);
     }
     spec.nchannels += image->channel_count;
-}
-
-std::string hex_of(zt_hash hash) {
-    char text[33];
-    snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, hash.high, hash.low);
-    return text;
 }
 
 void add_matrix(OIIO::ImageSpec &spec, const char *name, const double *matrix) {
@@ -140,46 +136,41 @@ void add_matrix(OIIO::ImageSpec &spec, const char *name, const double *matrix) {
     if (some) spec.attribute(name, OIIO::TypeMatrix, values);
 }
 
-void add_text(OIIO::ImageSpec &spec, const char *name, const char *text) {
-    if (text) spec.attribute(name, text);
-}
-
-/* As attributes of OpenEXR, by its standard names where there are such. Numbers that
- * an attribute's 32 bits may not hold are texts. */
-void add_info_exr(OIIO::ImageSpec &spec, const zt_image_info &info) {
+/* By OpenEXR's standard names. */
+void add_standard(OIIO::ImageSpec &spec, const zt_image_info &info) {
     const int rate[2] = {info.rate.num, info.rate.den};
     spec.attribute("framesPerSecond", OIIO::TypeRational, rate);
     add_matrix(spec, "worldToCamera", info.world_to_camera);
     add_matrix(spec, "worldToNDC", info.world_to_ndc);
     spec.attribute("PixelAspectRatio", 1.0f);
     spec.attribute("renderTime", float(info.render_s));
-    spec.attribute("zoetrope:frame", std::to_string(info.frame));
-    spec.attribute("zoetrope:key", hex_of(info.key));
-    spec.attribute("zoetrope:seed", std::to_string(info.seed));
-    add_text(spec, "zoetrope:title", info.title);
-    add_text(spec, "zoetrope:description", info.description);
-    add_text(spec, "zoetrope:settings", info.settings);
 }
 
-/* As one text, for formats that have but a comment. */
-void add_info_comment(OIIO::ImageSpec &spec, const zt_image_info &info) {
-    std::string text = info.title ? std::string(info.title) + "; " : "";
-    if (info.description) text += std::string(info.description) + "; ";
-    text += "frame " + std::to_string(info.frame) + "; key " + hex_of(info.key) + "; seed " +
-            std::to_string(info.seed);
-    if (info.settings) text += std::string("; settings ") + info.settings;
-    spec.attribute("ImageDescription", text);
+struct Texts {
+    char *all[ZT_INFO_COUNT] = {};
+    ~Texts() { zt_info_free(all); }
+};
+
+/* As texts, each by its name; in TIFF, which has no place for those, as its one description. */
+zt_status add_texts(OIIO::ImageSpec &spec, const zt_image_info &info, bool one) {
+    Texts texts;
+    zt_status status = zt_info_print(texts.all, &info);
+    if (status != ZT_OK) return status;
+    for (int i = 0; i < ZT_INFO_COUNT && !one; i++)
+        if (texts.all[i]) spec.attribute(zt_info_names[i], texts.all[i]);
+    if (!one) return ZT_OK;
+    std::unique_ptr<char, decltype(&free)> joined(zt_info_join(texts.all), free);
+    if (joined) spec.attribute("ImageDescription", joined.get());
+    return joined ? ZT_OK : ZT_EMEMORY;
 }
 
-void add_info(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_wishes *w) {
-    std::string format = w->format->endings[0];
-    bool comment = format == ".png" || format == ".tif";
-    if (!image->info.known || (!is_exr(w) && !comment)) return;
+zt_status add_info(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_wishes *w) {
+    bool tiff = is_format(w, ".tif");
+    if (!image->info.known || !(is_format(w, ".exr") || is_format(w, ".png") || tiff))
+        return ZT_OK;
     spec.attribute("Software", software);
-    if (comment)
-        add_info_comment(spec, image->info);
-    else
-        add_info_exr(spec, image->info);
+    if (is_format(w, ".exr")) add_standard(spec, image->info);
+    return add_texts(spec, image->info, tiff);
 }
 
 OIIO::ImageSpec spec_for(const zt_image *image, const zt_image_wishes *w) {
@@ -195,7 +186,6 @@ OIIO::ImageSpec spec_for(const zt_image *image, const zt_image_wishes *w) {
     spec.tile_depth = w->tile ? 1 : 0;
     add_particulars(spec, w);
     add_channels(spec, image, w);
-    add_info(spec, image, w);
     return spec;
 }
 
@@ -308,7 +298,10 @@ zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
     std::unique_ptr<OIIO::ImageOutput> output =
         OIIO::ImageOutput::create(wishes->format->endings[0] + 1);
     if (!output) return refuse(listener, "write", path, OIIO::geterror());
-    if (!output->set_ioproxy(&memory) || !output->open(path, spec_for(image, wishes)) ||
+    OIIO::ImageSpec spec = spec_for(image, wishes);
+    zt_status status = add_info(spec, image, wishes);
+    if (status != ZT_OK) return status;
+    if (!output->set_ioproxy(&memory) || !output->open(path, spec) ||
         !write_pixels(*output, image, view) || !output->close())
         return refuse(listener, "write", path, output->geterror());
     made->data = static_cast<unsigned char *>(malloc(bytes.size()));
@@ -329,6 +322,21 @@ void spread(zt_image *image, const float *from, int channel_count, int alpha) {
     }
 }
 
+/* What the file says it is of. */
+zt_status read_info(zt_image *image, const OIIO::ImageSpec &spec) {
+    Texts split;
+    std::string texts[ZT_INFO_COUNT];
+    const char *found[ZT_INFO_COUNT];
+    std::string joined = spec.get_string_attribute("ImageDescription");
+    zt_status status = zt_info_split(split.all, joined.c_str());
+    if (status != ZT_OK) return status;
+    for (int i = 0; i < ZT_INFO_COUNT; i++) {
+        texts[i] = spec.get_string_attribute(zt_info_names[i]);
+        found[i] = texts[i].empty() ? split.all[i] : texts[i].c_str();
+    }
+    return zt_info_read(image, found);
+}
+
 zt_status read(zt_image **image, const char *path, zt_listener listener) {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1); /* as they are stored */
@@ -345,7 +353,9 @@ zt_status read(zt_image **image, const char *path, zt_listener listener) {
     if (status == ZT_EARGUMENT) return refuse(listener, "read", path, "it is too large");
     if (status != ZT_OK) return status;
     spread(*image, values.data(), channel_count, spec.alpha_channel);
-    return ZT_OK;
+    status = read_info(*image, spec);
+    if (status != ZT_OK) zt_image_free(image);
+    return status;
 }
 
 zt_status encode_guarded(zt_bytes *bytes, const zt_image *image, zt_view view,

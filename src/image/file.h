@@ -29,8 +29,8 @@ typedef struct zt_bytes {
  * largest number). A goes along where it is not 1 everywhere and the format has a place for it;
  * then integers are not multiplied by it, but in DPX; floats are, as in the image. OpenEXR has
  * the image's further channels, too, as floats. What the image is of, where that is known, goes
- * to attributes of OpenEXR and to a comment of PNG and TIFF. `path` is for messages. ZT_EFILE
- * after telling why. From any thread. */
+ * to attributes of OpenEXR, texts of PNG and the description of TIFF. `path` is for messages.
+ * ZT_EFILE after telling why. From any thread. */
 zt_status zt_image_file_encode(zt_bytes *bytes, const zt_image *image, zt_view view,
                                const zt_image_wishes *wishes, const char *path,
                                zt_listener listener);
@@ -44,7 +44,8 @@ zt_status zt_image_file_write(const zt_image *image, zt_view view,
                               zt_listener listener);
 
 /* Reads any image file into floats as they are stored (integers to 0..1, no transfer function
- * undone, grey as R = G = B, A = 1 where the file has none). The caller frees the image.
+ * undone, grey as R = G = B, A = 1 where the file has none), and what they say they are of. The
+ * caller frees the image.
  * ZT_EFILE after telling why; pictures of more than 2^28 pixels are refused, whatever the file
  * claims. */
 zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener listener);

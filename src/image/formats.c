@@ -26,7 +26,7 @@ static const zt_compression webp[] = {{"webp", 1, 100, 95}, {0}};
 
 static const zt_image_format formats[] = {
     {{".png"}, {ZT_DEPTH_8, ZT_DEPTH_16}, 2, png, false, true},
-    {{".exr"}, {ZT_DEPTH_HALF, ZT_DEPTH_FLOAT}, 2, exr, true, true},
+    {{".exr"}, {ZT_DEPTH_FLOAT, ZT_DEPTH_HALF}, 2, exr, true, true},
     {{".tif", ".tiff"}, {ZT_DEPTH_16, ZT_DEPTH_8, ZT_DEPTH_FLOAT}, 3, tiff, true, true},
     {{".jpg", ".jpeg"}, {ZT_DEPTH_8}, 1, jpeg, false, false},
     {{".webp"}, {ZT_DEPTH_8}, 1, webp, false, true},

@@ -30,6 +30,7 @@ void zt_image_free(zt_image **image) {
     if (!*image) return;
     for (int i = 0; i < (*image)->channel_count; i++) free((*image)->channels[i].values);
     free((*image)->pixels);
+    free((*image)->texts);
     free(*image);
     *image = NULL;
 }
