@@ -134,10 +134,26 @@ static void keep_hits(work *restrict w, const zt_tracer *tracer) {
 }
 
 /* Cuts to 0..1; what is no number becomes 0. */
+#if defined __AVX512F__
+/* The same by bits, which from 0 to infinity are ordered as the numbers are, and beyond it for
+ * all else: two instructions, where the comparisons become seven. */
+static real cut(real x) {
+    const real one = 1, infinity = REAL_INFINITY;
+    real_code code, top, last;
+    memcpy(&code, &x, sizeof code);
+    memcpy(&top, &one, sizeof top);
+    memcpy(&last, &infinity, sizeof last);
+    code = code > last ? 0 : code;
+    code = code < top ? code : top;
+    memcpy(&x, &code, sizeof x);
+    return x;
+}
+#else
 static real cut(real x) {
     real low = x > 0 ? x : 0;
     return low < 1 ? low : 1;
 }
+#endif
 
 /* What a lamp gives point k where nothing is in between: added to the sums; or, where it may be
  * `hidden`, kept, with a shadow ray for it if it is any. Others look no distance, and meet

@@ -11,6 +11,7 @@
 #if defined ZT_REAL_IS_DOUBLE
 typedef double real;
 typedef int64_t real_bits; /* as many bits */
+typedef uint64_t real_code;
 #define REAL_BITS_MAX      INT64_MAX
 #define ZT_REAL_NAME(name) name##_double
 #define REAL_ROUNDING      0x1p-53 /* the relative error of one rounding */
@@ -20,6 +21,7 @@ static inline real real_abs(real a) { return fabs(a); }
 #else
 typedef float real;
 typedef int32_t real_bits;
+typedef uint32_t real_code;
 #define REAL_BITS_MAX      INT32_MAX
 #define ZT_REAL_NAME(name) name##_single
 #define REAL_ROUNDING      0x1p-24f
