@@ -21,20 +21,21 @@ typedef struct zt_output zt_output;
 typedef enum zt_record_kind {
     ZT_RECORD_IMAGE, /* an image of numbered ones, with its final name */
     ZT_RECORD_PIECE, /* some frames of a movie, encoded so that they stand alone */
-    ZT_RECORD_FRAME  /* a frame that waits for its piece to be complete */
+    ZT_RECORD_FILM   /* a movie under its final name, complete */
 } zt_record_kind;
 
 typedef struct zt_output_record {
     zt_record_kind kind;
     int64_t first;    /* an image: its frame's number; else the position of the first frame, as
                          frames come, from 0 */
-    int64_t count;    /* of frames; 1 but of a piece */
+    int64_t count;    /* of frames; 1 of an image */
     zt_hash key;      /* of what decides the bytes: all of its frames' keys, and how they are
                          written */
-    int64_t bytes;    /* an image: the size of its file; else where it ends in the file that
-                         grows */
-    zt_hash checksum; /* of an image's file; of what else is held, in whatever file that is */
+    int64_t bytes;    /* the size of the file; of a piece, where it ends in the file that grows */
+    zt_hash checksum; /* of the file; of a piece, of what is in it */
     double render_s;  /* seconds of wall time that its frames took to render, added up */
+    const char *file; /* of an image: its file, for readers: nothing is opened by it. NULL: none,
+                         or not known */
 } zt_output_record;
 
 /* What is to come, and what there is of it. The caller's, until the output is closed. */

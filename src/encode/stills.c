@@ -292,7 +292,8 @@ static zt_status write_file(const stills *images, const zt_bytes *bytes, const c
 }
 
 /* Tells that an image was completed. */
-static zt_status record(const stills *images, const still *ready, int64_t frame) {
+static zt_status record(const stills *images, const still *ready, int64_t frame,
+                        const char *path) {
     const zt_output_plan *plan = images->plan;
     if (!plan || !plan->completed) return ZT_OK;
     const zt_output_record record = {.kind = ZT_RECORD_IMAGE,
@@ -301,7 +302,8 @@ static zt_status record(const stills *images, const still *ready, int64_t frame)
                                      .key = ready->key,
                                      .bytes = (int64_t)ready->bytes.size,
                                      .checksum = ready->checksum,
-                                     .render_s = ready->render_s};
+                                     .render_s = ready->render_s,
+                                     .file = path};
     return plan->completed(plan->user, &record);
 }
 
@@ -313,7 +315,7 @@ static zt_status write_still(void *state, void *made, int64_t frame) {
     if (status == ZT_OK && !images->after && images->single_written)
         status = refuse_several(images);
     if (status == ZT_OK) status = write_file(images, &ready->bytes, path);
-    if (status == ZT_OK) status = record(images, ready, frame);
+    if (status == ZT_OK) status = record(images, ready, frame, path);
     images->single_written = true;
     free(path);
     drop_still(state, made);

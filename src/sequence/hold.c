@@ -128,7 +128,7 @@ static zt_status read_records(zt_hold *h) {
     int64_t capacity = 0;
     zt_status status = ZT_OK;
     while (status == ZT_OK && getline(&line, &size, file) > 0) {
-        zt_output_record r;
+        zt_output_record r = {0};
         int kind;
         if (sscanf(line, LINE_READ, &kind, &r.first, &r.count, &r.key.high, &r.key.low,
                    &r.bytes, &r.checksum.high, &r.checksum.low, &r.render_s, end) == 10) {
