@@ -12,6 +12,9 @@ typedef enum zt_precision {
     ZT_PRECISION_DOUBLE  /* 53 binary digits */
 } zt_precision;
 
+/* What a precision is called: "auto", "single", "double". */
+const char *zt_precision_name(zt_precision precision);
+
 #ifdef __cplusplus
 }
 #endif

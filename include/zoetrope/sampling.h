@@ -19,6 +19,9 @@ typedef enum zt_filter {
     ZT_FILTER_COUNT
 } zt_filter;
 
+/* What a filter is called: "blackman-harris". */
+const char *zt_filter_name(zt_filter filter);
+
 typedef struct zt_sampling {
     int min, max; /* samples a pixel; where they are the same, as many in each */
     double error; /* a pixel whose estimated standard error, in linear light, is below this is

@@ -72,20 +72,6 @@ double zt_findings_film_s(const zt_findings *findings, const zt_rung *rung) {
 /* ---- words ---------------------------------------------------------------------------------
  */
 
-const char *zt_filter_name(zt_filter filter) {
-    static const char *const names[ZT_FILTER_COUNT] = {[ZT_FILTER_BOX] = "box",
-                                                       [ZT_FILTER_TENT] = "tent",
-                                                       [ZT_FILTER_GAUSSIAN] = "gaussian",
-                                                       [ZT_FILTER_MITCHELL] = "mitchell",
-                                                       [ZT_FILTER_BLACKMAN_HARRIS] =
-                                                           "blackman-harris"};
-    return names[filter];
-}
-
-const char *zt_precision_name(zt_precision precision) {
-    return precision == ZT_PRECISION_DOUBLE ? "double" : "single";
-}
-
 zt_words zt_words_of_rung(const zt_rung *rung) {
     zt_words w;
     const zt_sampling *s = &rung->sampling;

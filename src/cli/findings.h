@@ -41,9 +41,6 @@ zt_words zt_words_of_time(double seconds);         /* "1.9 s", "3 min 20 s" */
 zt_words zt_words_of_bytes(double bytes);          /* "12 MB" */
 zt_words zt_words_of_error(const zt_findings *findings, const zt_rung *rung); /* its RMSE */
 
-const char *zt_filter_name(zt_filter filter);
-const char *zt_precision_name(zt_precision precision);
-
 /* How long the whole film takes with a rung's setting, seconds. */
 double zt_findings_film_s(const zt_findings *findings, const zt_rung *rung);
 

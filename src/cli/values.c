@@ -46,11 +46,8 @@ bool zt_value_size(zt_render_settings *settings, const char *text, zt_report *re
 }
 
 bool zt_value_precision(zt_render_settings *settings, const char *text, zt_report *report) {
-    static const char *const names[] = {[ZT_PRECISION_AUTO] = "auto",
-                                        [ZT_PRECISION_SINGLE] = "single",
-                                        [ZT_PRECISION_DOUBLE] = "double"};
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(text, names[i]) != 0) continue;
+    for (int i = ZT_PRECISION_AUTO; i <= ZT_PRECISION_DOUBLE; i++) {
+        if (strcmp(text, zt_precision_name((zt_precision)i)) != 0) continue;
         settings->precision = (zt_precision)i;
         return true;
     }

@@ -139,8 +139,8 @@ static void read_samples(zt_sampling *sampling, zt_mistakes *mistakes, const zt_
 /* "filter: gaussian", or a mapping of "kind" and "width" from end to end. */
 static void read_filter(zt_sampling *sampling, zt_mistakes *mistakes, const zt_node *node) {
     static const char *const names[] = {"kind", "width"};
-    static const char *const filters[ZT_FILTER_COUNT] = {"box", "tent", "gaussian", "mitchell",
-                                                         "blackman-harris"};
+    const char *filters[ZT_FILTER_COUNT];
+    for (int f = 0; f < ZT_FILTER_COUNT; f++) filters[f] = zt_filter_name((zt_filter)f);
     const zt_node *kind = node;
     int choice;
     if (node->kind == ZT_NODE_MAPPING) {

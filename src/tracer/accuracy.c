@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <zoetrope/precision.h>
+
 /* A thing's place is known to within this many roundings of single precision of the largest
  * number in its arithmetic: subtraction from the camera, intersection and projection together
  * stay below. */
@@ -161,4 +163,11 @@ zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_
     double size = fmax(one->size, other->size);
     return (zt_accuracy){
         ZT_ACCURACY_TWIN, one->object, other->object, WRONG * size, gap, gap, size};
+}
+
+const char *zt_precision_name(zt_precision precision) {
+    static const char *const names[] = {[ZT_PRECISION_AUTO] = "auto",
+                                        [ZT_PRECISION_SINGLE] = "single",
+                                        [ZT_PRECISION_DOUBLE] = "double"};
+    return names[precision];
 }
