@@ -40,4 +40,16 @@ static inline zt_animation *animation_of(const char *text) {
     return animation;
 }
 
+/* The film of "film: { duration: 1 s, ... }". */
+static inline zt_film film_with(const char *words) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "zoetrope: 1\nfilm: { duration: 1 s%s }\ncamera: { position: [0, 0, 5] }\n",
+             words);
+    zt_animation *animation = animation_of(text);
+    zt_film film = *zt_animation_film(animation);
+    zt_animation_free(&animation);
+    return film;
+}
+
 #endif

@@ -8,12 +8,8 @@
 
 #include <cmocka.h>
 
-#include <zoetrope/animation.h>
-#include <zoetrope/aov.h>
-#include <zoetrope/renderer.h>
-
 #include "base/vec.h"
-#include "descriptions.h"
+#include "pictures.h"
 
 enum { WIDTH = 50, HEIGHT = 34 }; /* no whole number of tiles */
 
@@ -65,42 +61,22 @@ static void channels(void **state) {
     zt_image_free(&image);
 }
 
-static unsigned aovs_of(const char *words) {
-    char text[512];
-    snprintf(text, sizeof text,
-             "zoetrope: 1\nfilm: { duration: 1 s%s }\ncamera: { position: [0, 0, 5] }\n",
-             words);
-    zt_animation *animation = animation_of(text);
-    unsigned aovs = zt_animation_film(animation)->aovs;
-    zt_animation_free(&animation);
-    return aovs;
-}
-
 static void description(void **state) {
     (void)state;
-    assert_int_equal(aovs_of(""), 0);
-    assert_int_equal(aovs_of(", aovs: []"), 0);
-    assert_int_equal(aovs_of(", aovs: all"), ZT_AOV_ALL);
-    assert_int_equal(aovs_of(", aovs: N"), ZT_AOV_N);
-    assert_int_equal(aovs_of(", aovs: [id.object, Z, Z]"), ZT_AOV_Z | ZT_AOV_OBJECT);
+    assert_int_equal(film_with("").aovs, 0);
+    assert_int_equal(film_with(", aovs: []").aovs, 0);
+    assert_int_equal(film_with(", aovs: all").aovs, ZT_AOV_ALL);
+    assert_int_equal(film_with(", aovs: N").aovs, ZT_AOV_N);
+    assert_int_equal(film_with(", aovs: [id.object, Z, Z]").aovs, ZT_AOV_Z | ZT_AOV_OBJECT);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------
  */
 
 static zt_image *taken(const char *text, int64_t frame, unsigned aovs, int threads) {
-    zt_animation *animation = animation_of(text);
-    zt_renderer *renderer;
-    zt_image *image;
-    zt_render_settings settings = {.width = WIDTH, .height = HEIGHT, .threads = threads};
-    assert_int_equal(zt_renderer_open(&renderer, animation, &settings, (zt_listener){0}),
-                     ZT_OK);
-    assert_int_equal(zt_image_create(&image, WIDTH, HEIGHT), ZT_OK);
-    assert_int_equal(zt_image_add_aovs(image, aovs), ZT_OK);
-    assert_int_equal(zt_renderer_frame(renderer, frame, image, NULL), ZT_OK);
-    zt_renderer_close(&renderer);
-    zt_animation_free(&animation);
-    return image;
+    return picture_of(text, frame,
+                      &(zt_render_settings){
+                          .width = WIDTH, .height = HEIGHT, .threads = threads, .aovs = aovs});
 }
 
 static double value(const zt_image *image, const char *name, int x, int y) {

@@ -27,9 +27,9 @@ ZT_CLONES static void mark_paths(uint8_t *restrict mark, const uint32_t *restric
                 mark[x] = PATH_LEAST;
 }
 
-/* Marks the pixels of a row whose color is off the line between those of their neighbours: a
- * step of twice the error, of which a pixel may hold any part, bends it by as much. A slope
- * does not, and its middle is its mean. */
+/* Marks the pixels of a row whose color, or A, is off the line between those of their
+ * neighbours: a step of twice the error, of which a pixel may hold any part, bends it by as
+ * much. A slope does not, and its middle is its mean. */
 ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict above,
                                   const float *restrict row, const float *restrict below,
                                   int width, float allowed) {
@@ -44,8 +44,9 @@ ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict 
             bent[i] = (across > along ? across : along) > allowed;
         }
         for (int i = 0; i < count; i++)
-            mark[first + i] =
-                bent[4 * i] | bent[4 * i + 1] | bent[4 * i + 2] ? COLOR_LEAST : mark[first + i];
+            mark[first + i] = bent[4 * i] | bent[4 * i + 1] | bent[4 * i + 2] | bent[4 * i + 3]
+                                  ? COLOR_LEAST
+                                  : mark[first + i];
     }
 }
 
