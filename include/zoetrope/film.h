@@ -27,6 +27,8 @@ typedef struct zt_film_order {
     bool overwrites;          /* whatever is there, and whatever is known of it */
     bool forgets; /* the target is not held, and nothing is remembered; overwrites */
     const char *description, *title; /* the description's file, and what the film is called */
+    const zt_override *overrides; /* that it was read with, for what images say of themselves */
+    int override_count;
 } zt_film_order;
 
 /* What became of the frames. */

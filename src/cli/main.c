@@ -143,7 +143,9 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                            .budget = options->budget,
                            .overwrites = options->overwrites,
                            .forgets = options->command == ZT_COMMAND_FRAME,
-                           .description = options->file};
+                           .description = options->file,
+                           .overrides = options->sets,
+                           .override_count = options->set_count};
     zt_film_result result = {0};
     listen_for_interrupts();
     zt_progress progress = zt_progress_begin(report, frames->count);

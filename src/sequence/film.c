@@ -11,6 +11,7 @@
 #include "sequence/hold.h"
 #include "sequence/outway.h"
 #include "sequence/renderer.h"
+#include "sequence/settings.h"
 
 /* A film under way. */
 typedef struct making {
@@ -26,6 +27,7 @@ typedef struct making {
     zt_outway *way;
     zt_image *last; /* that was lent and filled; NULL: none */
     zt_image_info info;
+    zt_settings_texts settings;
 } making;
 
 static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
@@ -68,6 +70,7 @@ static zt_status make_image(making *m, const zt_film_order *order, int64_t posit
     if (m->last) zt_outway_release(m->way, m->last);
     m->last = NULL;
     ZT_TRY(zt_outway_lend(&m->last, m->way));
+    ZT_TRY(zt_settings_of_frame(&m->settings, r, order, frame));
     ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
     m->info = (zt_image_info){.known = !m->forgets,
                               .frame = frame,
@@ -76,7 +79,8 @@ static zt_status make_image(making *m, const zt_film_order *order, int64_t posit
                               .render_s = r->cost.render_s,
                               .seed = r->sampling.seed,
                               .title = order->title,
-                              .description = order->description};
+                              .description = order->description,
+                              .settings = m->settings.text};
     m->result->rendered++;
     return ZT_OK;
 }
@@ -168,6 +172,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     zt_status let_go = zt_hold_close(&hold);
     if (status == ZT_OK) status = let_go;
     zt_frames_free(&m.frames);
+    zt_arena_free(&m.settings.arena);
     free(m.keys);
     return status;
 }

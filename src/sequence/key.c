@@ -10,8 +10,7 @@
 #include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
-/* Becomes another one whenever the same scene comes out with other pixels. */
-static const char arithmetic[] = "zoetrope 1";
+const char zt_arithmetic[] = "zoetrope 1";
 
 static zt_hash hash_of(const void *bytes, size_t size) {
     return bytes && size ? zt_hash_bytes(bytes, size) : (zt_hash){0};
@@ -58,7 +57,7 @@ zt_status zt_renderer_key(zt_hash *key, zt_renderer *r, int64_t frame) {
                               s.edges,         s.filter,
                               s.filter_width,  s.seed,
                               s.seed_fixed,    r->animation->film.transparent};
-    const zt_hash parts[] = {zt_hash_bytes(arithmetic, sizeof arithmetic),
+    const zt_hash parts[] = {zt_hash_bytes(zt_arithmetic, sizeof zt_arithmetic),
                              zt_hash_bytes(numbers, sizeof numbers), r->held,
                              zt_shutter_content(&exposure)};
     *key = zt_hash_bytes(parts, sizeof parts);

@@ -50,6 +50,10 @@ typedef struct zt_taking {
     zt_render_job job;
 } zt_taking;
 
+/* Its version, which becomes another one whenever the same scene comes out with other pixels.
+ */
+extern const char zt_arithmetic[];
+
 /* All that comes before rendering. */
 zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t frame);
 
