@@ -47,7 +47,7 @@ set(doors
     "dlfcn.h|base/module.c"
     "pthread.h|base/pool.c"
     "xxh|base/hash.c"
-    "OpenImageIO/|image/file.cpp"
+    "OpenImageIO/|image/file[a-z_]*.(cpp|h)"
     "lua|keyframe/expression.c"
     "yaml.h|description/document.c"
     "embree|tracer/embree.c"

@@ -152,7 +152,11 @@ static void wishes_refused(void **state) {
         {"x.jpg", "compression", "jpeg:101", "jpeg:1-100"},
         {"x.hdr", "compression", "zip", "there is: none"},
         {"x.gift", "bits", "8", "ending of x.gift"},
-        {"x.png", "depth", "8", "format-option depth=8: must be bits, compression or tile"},
+        {"x.png", "parts", "layers",
+         "parts=layers makes no sense for a png file; there is: one"},
+        {"x.exr", "parts", "each", "there is: one, layers"},
+        {"x.png", "depth", "8",
+         "format-option depth=8: must be bits, compression, tile or parts"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++) {
@@ -448,7 +452,7 @@ static void exr_has_all_channels(void **state) {
             }
             assert_non_null(exr_line(bytes, size, "R", 8, y, 4, &type));
             assert_int_equal(type, 1);
-            assert_int_equal(exr_line(bytes, size, "A", 8, y, 4, &type) != NULL, alpha);
+            assert_non_null(exr_line(bytes, size, "A", 8, y, 4, &type)); /* always */
         }
         free(bytes);
         zt_image *back = read_back("layers.exr"); /* colours first, and no Z taken for A */
@@ -457,6 +461,55 @@ static void exr_has_all_channels(void **state) {
         zt_image_free(&back);
         zt_image_free(&image);
     }
+}
+
+static void assert_same_channels(const zt_image *back, const zt_image *image) {
+    size_t size = (size_t)image->width * (size_t)image->height * sizeof(float);
+    assert_memory_equal(back->pixels, image->pixels, 4 * size);
+    assert_int_equal(back->channel_count, image->channel_count);
+    for (int c = 0; c < image->channel_count; c++) {
+        const float *values = zt_image_channel(back, image->channels[c].name);
+        assert_non_null(values);
+        assert_memory_equal(values, image->channels[c].values, size);
+    }
+}
+
+/* Whether layers share a part or have one each, and whether the file is on the disk or in
+ * memory: what is read is what was written, each number of each channel. */
+static void channels_are_read(void **state) {
+    static const char *const names[] = {"Z",   "N.X",       "N.Y",         "N.Z",
+                                        "P.X", "id.object", "id.material", "error"};
+    static const zt_wish wishes[][3] = {
+        {{"format-option", "parts=one"}},
+        {{"format-option", "parts=layers"}},
+        {{"format-option", "parts=layers"}, {"format-option", "tile=16"}}};
+    (void)state;
+    zt_image *image = covered_picture();
+    for (int c = 0; c < 8; c++) {
+        assert_int_equal(zt_image_add_channel(image, names[c]), ZT_OK);
+        for (int i = 0; i < image->width * image->height; i++)
+            image->channels[c].values[i] = 100000.25f * (float)(c + 1) + (float)i;
+    }
+    image->channels[0].values[3] = INFINITY; /* nothing is met */
+    for (int w = 0; w < 3; w++) {
+        write_wished(image, ZT_VIEW_SRGB, "parts.exr", wishes[w]);
+        zt_image *back = read_back("parts.exr");
+        assert_same_channels(back, image);
+        zt_image_free(&back);
+        heard h;
+        zt_bytes bytes;
+        bytes.data = (unsigned char *)file_bytes("parts.exr", &bytes.size);
+        assert_int_equal(zt_image_file_decode(&back, &bytes, "of.exr", listener_of(&h)), ZT_OK);
+        assert_same_channels(back, image);
+        zt_image_free(&back);
+        bytes.size /= 2;
+        assert_int_equal(zt_image_file_decode(&back, &bytes, "half.exr", listener_of(&h)),
+                         ZT_EFILE);
+        assert_told(&h, "half.exr");
+        assert_null(back);
+        free(bytes.data);
+    }
+    zt_image_free(&image);
 }
 
 static void know(zt_image *image) {
@@ -468,6 +521,7 @@ static void know(zt_image *image) {
                                   .seed = UINT64_MAX,
                                   .title = "Näher",
                                   .description = "film.yaml",
+                                  .view = "filmic",
                                   .settings = "{\"samples\": 4}"};
     for (int i = 0; i < 16; i++) image->info.world_to_camera[i] = i + 0.5;
 }
@@ -540,13 +594,14 @@ static void files_tell_what_they_are_of(void **state) {
                                       "zoetrope:seed: 18446744073709551615\n"
                                       "zoetrope:title: Näher\n"
                                       "zoetrope:description: film.yaml\n"
+                                      "zoetrope:view: filmic\n"
                                       "zoetrope:settings: {\"samples\": 4}\n";
     assert_non_null(memmem(bytes, size, description, sizeof description));
     free(bytes);
-    static const char *const others[] = {"o.jpg", "o.webp", "o.dpx", "o.hdr"};
-    for (int f = 0; f < 4; f++) { /* which stay as they are */
+    static const char *const others[] = {"o.jpg", "o.webp", "o.hdr"};
+    for (int f = 0; f < 3; f++) { /* which stay as they are */
         write_picture(image, ZT_VIEW_SRGB, others[f]);
-        assert_int_equal(rename(others[f], "known"), 0); /* DPX holds the name */
+        assert_int_equal(rename(others[f], "known"), 0);
         image->info.known = false;
         write_picture(image, ZT_VIEW_SRGB, others[f]);
         image->info.known = true;
@@ -584,14 +639,16 @@ static void what_files_tell_is_read(void **state) {
             assert_true(b->key.high == i->key.high && b->key.low == i->key.low);
             assert_text(b->title, i->title);
             assert_text(b->description, i->description);
+            assert_text(b->view, i->view);
             assert_text(b->settings, i->settings);
+            assert_int_equal(back->linear, f == 0);
             zt_image_free(&back);
         }
     image->info.known = false;
     for (int f = 0; f < 3; f++) {
         write_picture(image, ZT_VIEW_SRGB, paths[f]);
         zt_image *back = read_back(paths[f]);
-        assert_true(!back->info.known && !back->texts);
+        assert_true(!back->info.known);
         zt_image_free(&back);
     }
     zt_image_free(&image);
@@ -627,7 +684,7 @@ static void nonsense_is_not_known(void **state) {
         write_bytes("nonsense.tif", bytes, size);
         replace_all(bytes, size, changes[i].to, changes[i].from);
         zt_image *back = read_back("nonsense.tif");
-        if (back->info.known || back->texts) fail_msg("%s is known", changes[i].to);
+        if (back->info.known) fail_msg("%s is known", changes[i].to);
         zt_image_free(&back);
     }
     write_bytes("nonsense.tif", bytes, size);
@@ -651,6 +708,7 @@ int main(void) {
         cmocka_unit_test(huge_claims),
         cmocka_unit_test(alpha_where_it_says_something),
         cmocka_unit_test(exr_has_all_channels),
+        cmocka_unit_test(channels_are_read),
         cmocka_unit_test(files_tell_what_they_are_of),
         cmocka_unit_test(what_files_tell_is_read),
         cmocka_unit_test(nonsense_is_not_known),

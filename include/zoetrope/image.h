@@ -42,6 +42,7 @@ typedef struct zt_image_info {
      * picture, left to right, bottom to top. All zeros where there is no such matrix. */
     double world_to_camera[16], world_to_ndc[16];
     const char *title, *description; /* the film's name, and its file's */
+    const char *view;                /* how a display shows it: a zt_view's name */
     const char *settings;            /* all else that decides the pixels, as a text to be read
                                         again by a program */
 } zt_image_info;
@@ -60,11 +61,13 @@ typedef struct zt_channel {
 typedef struct zt_image {
     int width, height;
     float *pixels;
+    bool linear;      /* false: read from a file of numbers for a display */
     bool transparent; /* A was asked for: files have it even where it is 1 everywhere */
     zt_channel channels[ZT_IMAGE_CHANNELS_MAX];
     int channel_count;
     zt_image_info info;
-    char *texts; /* those of the info, of an image that was read; else NULL */
+    struct zt_image_text *texts; /* the image's own: of one that was read, those of its info,
+                                    and its channels' names; else NULL */
 } zt_image;
 
 /* Makes a black, opaque image. ZT_EARGUMENT where a side is not in 1..ZT_IMAGE_SIDE_MAX. */
@@ -73,9 +76,9 @@ void zt_image_free(zt_image **image);
 
 /* Reads an image file's numbers as they are stored: an OpenEXR file's linear light exactly,
  * integers as 0..1 with no transfer function undone; grey as R = G = B, A = 1 where the file
- * has none. What it is of is known where an OpenEXR, PNG or TIFF file that was written here
- * says so, but for matrices and the time it took. The caller frees the image. ZT_EFILE after
- * telling why. */
+ * has none; of OpenEXR the further channels, too, whatever part of the file has them. What it
+ * is of is known where an OpenEXR, PNG or TIFF file that was written here says so, but for
+ * matrices and the time it took. The caller frees the image. ZT_EFILE after telling why. */
 zt_status zt_image_read(zt_image **image, const char *path, zt_listener listener);
 
 /* Adds a channel of zeros, which asks rendering to fill it where it knows the name

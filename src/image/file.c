@@ -59,7 +59,15 @@ zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener lis
     const zt_image_file_door *door;
     *image = NULL;
     ZT_TRY(open_door(&door, listener));
-    return door->read(image, path, listener);
+    return door->read(image, path, NULL, listener);
+}
+
+zt_status zt_image_file_decode(zt_image **image, const zt_bytes *bytes, const char *path,
+                               zt_listener listener) {
+    const zt_image_file_door *door;
+    *image = NULL;
+    ZT_TRY(open_door(&door, listener));
+    return door->read(image, path, bytes, listener);
 }
 
 zt_status zt_image_read(zt_image **image, const char *path, zt_listener listener) {

@@ -50,11 +50,17 @@ zt_status zt_image_file_write(const zt_image *image, zt_view view,
  * claims. */
 zt_status zt_image_file_read(zt_image **image, const char *path, zt_listener listener);
 
+/* The same of a file that is in memory. `path` is for messages, and its ending says what the
+ * bytes are. */
+zt_status zt_image_file_decode(zt_image **image, const zt_bytes *bytes, const char *path,
+                               zt_listener listener);
+
 /* The module's table: what the functions above are made of. */
 typedef struct zt_image_file_door {
     zt_status (*encode)(zt_bytes *bytes, const zt_image *image, zt_view view,
                         const zt_image_wishes *wishes, const char *path, zt_listener listener);
-    zt_status (*read)(zt_image **image, const char *path, zt_listener listener);
+    zt_status (*read)(zt_image **image, const char *path, const zt_bytes *bytes,
+                      zt_listener listener); /* of the bytes, where they are not NULL */
 } zt_image_file_door;
 
 #ifdef __cplusplus

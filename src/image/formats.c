@@ -25,13 +25,19 @@ static const zt_compression jpeg[] = {{"jpeg", 1, 100, 95}, {0}};
 static const zt_compression webp[] = {{"webp", 1, 100, 95}, {0}};
 
 static const zt_image_format formats[] = {
-    {{".png"}, {ZT_DEPTH_8, ZT_DEPTH_16}, 2, png, false, true},
-    {{".exr"}, {ZT_DEPTH_FLOAT, ZT_DEPTH_HALF}, 2, exr, true, true},
-    {{".tif", ".tiff"}, {ZT_DEPTH_16, ZT_DEPTH_8, ZT_DEPTH_FLOAT}, 3, tiff, true, true},
-    {{".jpg", ".jpeg"}, {ZT_DEPTH_8}, 1, jpeg, false, false},
-    {{".webp"}, {ZT_DEPTH_8}, 1, webp, false, true},
-    {{".hdr"}, {ZT_DEPTH_FLOAT}, 1, NULL, false, false},
-    {{".dpx"}, {ZT_DEPTH_10, ZT_DEPTH_8, ZT_DEPTH_12, ZT_DEPTH_16}, 4, NULL, false, true}};
+    {{".png"}, {ZT_DEPTH_8, ZT_DEPTH_16}, 2, png, false, true, false},
+    {{".exr"}, {ZT_DEPTH_FLOAT, ZT_DEPTH_HALF}, 2, exr, true, true, true},
+    {{".tif", ".tiff"}, {ZT_DEPTH_16, ZT_DEPTH_8, ZT_DEPTH_FLOAT}, 3, tiff, true, true, false},
+    {{".jpg", ".jpeg"}, {ZT_DEPTH_8}, 1, jpeg, false, false, false},
+    {{".webp"}, {ZT_DEPTH_8}, 1, webp, false, true, false},
+    {{".hdr"}, {ZT_DEPTH_FLOAT}, 1, NULL, false, false, false},
+    {{".dpx"},
+     {ZT_DEPTH_10, ZT_DEPTH_8, ZT_DEPTH_12, ZT_DEPTH_16},
+     4,
+     NULL,
+     false,
+     true,
+     false}};
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats, LIST_MAX = 160, TILE_MAX = 4096 };
 
 const char *const zt_image_file_endings[] = {".png",  ".exr",  ".tif", ".tiff", ".jpg",
@@ -107,6 +113,13 @@ static zt_status wish_tile(zt_image_wishes *w, const char *value, zt_listener li
     return ZT_OK;
 }
 
+static zt_status wish_parts(zt_image_wishes *w, const char *value, zt_listener listener) {
+    w->parts = value && zt_text_equal(value, "layers");
+    if (!value || zt_text_equal(value, "one") || (w->parts && w->format->has_layers))
+        return ZT_OK;
+    return refuse(listener, w, "parts", value, w->format->has_layers ? "one, layers" : "one");
+}
+
 /* What a format-option says of a key; NULL where none does. Of two the later counts. */
 static const char *value_of(const zt_wish *options, const char *key) {
     const char *value = NULL;
@@ -120,16 +133,16 @@ static const char *value_of(const zt_wish *options, const char *key) {
 
 /* Refuses the first format-option that is not "key=value" of a key that there is. */
 static zt_status check_keys(const zt_wish *options, zt_listener listener) {
-    static const char *const keys[] = {"bits", "compression", "tile"};
+    static const char *const keys[] = {"bits", "compression", "tile", "parts"};
     for (; options && options->name; options++) {
         if (!zt_text_equal(options->name, "format-option")) continue;
         size_t length = strcspn(options->value, "=");
         bool known = false;
-        for (int i = 0; i < 3 && options->value[length]; i++)
+        for (int i = 0; i < 4 && options->value[length]; i++)
             known |= strlen(keys[i]) == length && strncmp(keys[i], options->value, length) == 0;
         if (known) continue;
         zt_tell(listener, ZT_ERROR,
-                "format-option %s: must be bits, compression or tile, such as bits=16",
+                "format-option %s: must be bits, compression, tile or parts, such as bits=16",
                 options->value);
         return ZT_EARGUMENT;
     }
@@ -149,5 +162,6 @@ zt_status zt_image_wish(zt_image_wishes *w, const char *name, const zt_wish *opt
     ZT_TRY(check_keys(options, listener));
     ZT_TRY(wish_depth(w, value_of(options, "bits"), listener));
     ZT_TRY(wish_compression(w, value_of(options, "compression"), listener));
-    return wish_tile(w, value_of(options, "tile"), listener);
+    ZT_TRY(wish_tile(w, value_of(options, "tile"), listener));
+    return wish_parts(w, value_of(options, "parts"), listener);
 }

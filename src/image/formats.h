@@ -34,6 +34,7 @@ typedef struct zt_image_format {
     int depth_count;
     const zt_compression *compressions; /* the first is the usual one; NULL: none to choose */
     bool has_tiles, has_alpha;
+    bool has_layers; /* further channels, in one part or in several */
 } zt_image_format;
 
 /* What is wished for. */
@@ -43,6 +44,8 @@ typedef struct zt_image_wishes {
     const zt_compression *compression; /* NULL where there is none to choose */
     int level;                         /* of the compression; 0 where it has none */
     int tile;                          /* pixels, the side of a tile; 0: rows */
+    bool parts;                        /* each layer (image/layers.h) is a part of its own */
+    const char *layer;                 /* the one that is written, or NULL: all of them */
 } zt_image_wishes;
 
 /* The endings of all formats; NULL after the last. */
@@ -52,8 +55,9 @@ extern const char *const zt_image_file_endings[];
 extern const char *const zt_image_file_options[];
 
 /* What is wished for of a file whose name ends as `name` does, by wishes called "format-option"
- * with values "bits=16", "compression=dwaa:45", "tile=64". `options` may be NULL, and may hold
- * others. ZT_EUNSUPPORTED, ZT_EARGUMENT after telling what there is instead. */
+ * with values "bits=16", "compression=dwaa:45", "tile=64", "parts=layers". `options` may be
+ * NULL, and may hold others. ZT_EUNSUPPORTED, ZT_EARGUMENT after telling what there is instead.
+ */
 zt_status zt_image_wish(zt_image_wishes *wishes, const char *name, const zt_wish *options,
                         zt_listener listener);
 

@@ -4,6 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "image/info.h"
+
+typedef struct zt_image_text {
+    struct zt_image_text *next;
+    char text[];
+} zt_image_text;
+
+const char *zt_image_own_text(zt_image *image, const char *text) {
+    size_t size = strlen(text) + 1;
+    zt_image_text *own = malloc(sizeof *own + size);
+    if (!own) return NULL;
+    own->next = image->texts;
+    image->texts = own;
+    return memcpy(own->text, text, size);
+}
+
 zt_status zt_image_create(zt_image **out, int width, int height) {
     *out = NULL;
     if (width < 1 || height < 1 || width > ZT_IMAGE_SIDE_MAX || height > ZT_IMAGE_SIDE_MAX)
@@ -13,6 +29,7 @@ zt_status zt_image_create(zt_image **out, int width, int height) {
     size_t pixel_count = (size_t)width * (size_t)height;
     image->width = width;
     image->height = height;
+    image->linear = true;
     /* Whole lines of a cache, so that four pixels are one. */
     size_t line = 64, size = (pixel_count * 4 * sizeof *image->pixels + line - 1) / line * line;
     image->pixels = aligned_alloc(line, size);
@@ -30,7 +47,11 @@ void zt_image_free(zt_image **image) {
     if (!*image) return;
     for (int i = 0; i < (*image)->channel_count; i++) free((*image)->channels[i].values);
     free((*image)->pixels);
-    free((*image)->texts);
+    while ((*image)->texts) {
+        zt_image_text *next = (*image)->texts->next;
+        free((*image)->texts);
+        (*image)->texts = next;
+    }
     free(*image);
     *image = NULL;
 }

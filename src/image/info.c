@@ -7,11 +7,11 @@
 
 #include "base/text.h"
 
-enum { FRAME, RATE, KEY, SEED, TITLE, DESCRIPTION, SETTINGS };
+enum { FRAME, RATE, KEY, SEED, TITLE, DESCRIPTION, VIEW, SETTINGS };
 
 const char *const zt_info_names[ZT_INFO_COUNT] = {
-    "zoetrope:frame", "zoetrope:rate",        "zoetrope:key",     "zoetrope:seed",
-    "zoetrope:title", "zoetrope:description", "zoetrope:settings"};
+    "zoetrope:frame", "zoetrope:rate",        "zoetrope:key",  "zoetrope:seed",
+    "zoetrope:title", "zoetrope:description", "zoetrope:view", "zoetrope:settings"};
 
 void zt_info_free(char *texts[ZT_INFO_COUNT]) {
     for (int i = 0; i < ZT_INFO_COUNT; i++) {
@@ -21,8 +21,10 @@ void zt_info_free(char *texts[ZT_INFO_COUNT]) {
 }
 
 zt_status zt_info_print(char *texts[ZT_INFO_COUNT], const zt_image_info *info) {
-    const char *own[ZT_INFO_COUNT] = {
-        [TITLE] = info->title, [DESCRIPTION] = info->description, [SETTINGS] = info->settings};
+    const char *own[ZT_INFO_COUNT] = {[TITLE] = info->title,
+                                      [DESCRIPTION] = info->description,
+                                      [VIEW] = info->view,
+                                      [SETTINGS] = info->settings};
     texts[FRAME] = zt_text_print("%" PRId64, info->frame);
     texts[RATE] = zt_text_print("%d/%d", info->rate.num, info->rate.den);
     texts[KEY] = zt_text_print("%016" PRIx64 "%016" PRIx64, info->key.high, info->key.low);
@@ -64,16 +66,14 @@ static bool read_numbers(zt_image_info *info, const char *const texts[ZT_INFO_CO
 zt_status zt_info_read(zt_image *image, const char *const texts[ZT_INFO_COUNT]) {
     zt_image_info info = {.known = true};
     if (!read_numbers(&info, texts)) return ZT_OK;
-    size_t size = 1;
-    for (int i = TITLE; i < ZT_INFO_COUNT; i++) size += texts[i] ? strlen(texts[i]) + 1 : 0;
-    char *copy = image->texts = malloc(size);
-    if (!copy) return ZT_EMEMORY;
-    const char **places[ZT_INFO_COUNT] = {
-        [TITLE] = &info.title, [DESCRIPTION] = &info.description, [SETTINGS] = &info.settings};
+    const char **places[ZT_INFO_COUNT] = {[TITLE] = &info.title,
+                                          [DESCRIPTION] = &info.description,
+                                          [VIEW] = &info.view,
+                                          [SETTINGS] = &info.settings};
     for (int i = TITLE; i < ZT_INFO_COUNT; i++) {
         if (!texts[i]) continue;
-        *places[i] = strcpy(copy, texts[i]);
-        copy += strlen(copy) + 1;
+        *places[i] = zt_image_own_text(image, texts[i]);
+        if (!*places[i]) return ZT_EMEMORY;
     }
     image->info = info;
     return ZT_OK;

@@ -12,9 +12,9 @@ extern "C" {
 #endif
 
 /* The least that must be read for an image to be known is what comes before the title. */
-enum { ZT_INFO_COUNT = 7 };
+enum { ZT_INFO_COUNT = 8 };
 
-/* "zoetrope:frame", "zoetrope:rate", ":key", ":seed", ":title", ":description", ":settings". */
+/* "zoetrope:frame", and so on: rate, key, seed, title, description, view, settings. */
 extern const char *const zt_info_names[ZT_INFO_COUNT];
 
 /* Makes the texts, of the caller to free; NULL of what is not known. ZT_EMEMORY; then there are
@@ -31,6 +31,9 @@ char *zt_info_join(char *const texts[ZT_INFO_COUNT]);
 
 /* Takes such a text apart; whatever else stands in it is passed by. As from zt_info_print(). */
 zt_status zt_info_split(char *texts[ZT_INFO_COUNT], const char *joined);
+
+/* A copy of a text that goes when the image does; NULL when out of memory. */
+const char *zt_image_own_text(zt_image *image, const char *text);
 
 void zt_info_free(char *texts[ZT_INFO_COUNT]);
 
