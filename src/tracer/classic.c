@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "tracer/footsteps.h"
 #include "tracer/intersect.h"
 #include "tracer/lamps.h"
 #include "tracer/points.h"
@@ -279,11 +280,14 @@ static int light_points(work *restrict w, const zt_tracer *tracer, const zt_box 
         bool hidden = lamp->shadows && may_meet(&bundle, tracer);
         shine_any(w, tracer, i, hidden, given, depth);
         int wanted = hidden ? count_wanted(w, p->count) : 0;
-        if (wanted == 0) continue;
         traced += wanted;
-        occlude(&w->shadow, &bundle, tracer);
-        add_lamp(w);
-        if (given->wants_path) note_hidden(w, i);
+        if (wanted > 0) {
+            occlude(&w->shadow, &bundle, tracer);
+            add_lamp(w);
+            if (given->wants_path) note_hidden(w, i);
+        }
+        if (given->footprint)
+            zt_tread_lamp(given->footprint, lamp, p, &w->shadow, w->wanted, hidden);
     }
     return traced;
 }
@@ -408,11 +412,14 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
         *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
         intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
         if (given->wants_cover && depth == 0) deliver_cover(light, w);
+        if (given->footprint) zt_tread_rays(given->footprint, depth, &bundle, &w->rays, tracer);
         keep_hits(w, tracer);
         if (w->rays.count == 0) return;
         if (given->wants_path) begin_paths(w);
         find_points(&w->points, &w->rays, tracer);
         around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
+        if (given->footprint)
+            zt_tread_points(given->footprint, depth, &w->points, &around, tracer);
         light->counts.shadow += light_points(w, tracer, &around, given, depth);
         deliver(light, w);
         if (given->wants_path) deliver_paths(light, w);

@@ -4,13 +4,15 @@
 #include "tracer/intersect.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tracer/motion_meet.h"
 #include "tracer/search.h"
 
 /* The loops of each kind of primitive: nearest hits, whether there is one at all, and nearest
- * hits of some lanes. Where things lie on each other (tie > 0), a later primitive's hit counts
- * where it is nearer by more than roundings, and an earlier one's where it is no further. */
+ * hits of some lanes, in any order of primitives. Where things lie on each other (tie > 0), a
+ * later primitive's hit counts where it is nearer by more than roundings, and an earlier one's
+ * where the later one's is not: of two the same one counts in either order. */
 #define DISTANCE(kind, i)                                                                      \
     zt_##kind##_distance(&own, from->x[i], from->y[i], from->z[i], rays->dx[i], rays->dy[i],   \
                          rays->dz[i], zt_leaving(from->source[i], index))
@@ -39,11 +41,14 @@
     static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,         \
                              const zt_primitive *p, int32_t index, int first, real tie) {      \
         const zt_primitive own = *p;                                                           \
-        const real more = 1 + tie, less = 1 - tie, share = tie / TIE;                          \
+        const real more = 1 + tie, share = tie / TIE;                                          \
         WIDE_LOOP for (int i = first; i < first + ZT_BATCH_LANES; i++) {                       \
             real t = DISTANCE(kind, i), nearest = rays->t[i], near = share * from->near[i];    \
             int32_t hit = rays->hit[i], later = index > hit;                                   \
-            int32_t before = t * more + near < nearest, no_later = t * less - near <= nearest; \
+            int32_t before = t * more + near < nearest, after = nearest * more + near < t;     \
+            int32_t no_later = (t < REAL_INFINITY) & (after == 0);                             \
+            int32_t close = zt_is_close(t, nearest, tie, near) & (index != hit);               \
+            rays->close[i] = zt_closer(rays->close[i], close);                                 \
             int32_t nearer = (later & before) | ((1 - later) & no_later);                      \
             rays->t[i] = nearer ? t : nearest;                                                 \
             rays->hit[i] = nearer ? index : hit;                                               \
@@ -119,6 +124,7 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
     }
+    if (tracer->crowd) memset(rays->close, 0, sizeof rays->close);
     for (int32_t k = 0; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];

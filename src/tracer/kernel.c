@@ -6,6 +6,7 @@
 
 #include "base/diag.h"
 #include "base/text.h"
+#include "tracer/footprint.h"
 
 #define KERNELS(isa) const zt_kernel zt_kernel_single_##isa, zt_kernel_double_##isa
 extern KERNELS(scalar);
@@ -23,6 +24,9 @@ typedef zt_status prepare_search(zt_tracer *tracer, zt_meshes *meshes, zt_arena 
 prepare_search zt_prepare_search_single, zt_prepare_search_double;
 typedef void prepare_ready(zt_ready *ready, const zt_tracer *tracer);
 prepare_ready zt_prepare_ready_single, zt_prepare_ready_double;
+
+typedef zt_status outline(zt_outline *outline, const zt_tracer *tracer, zt_arena *arena);
+outline zt_outline_single, zt_outline_double;
 
 static const zt_kernel *select_kernel(zt_precision precision) {
     const char *wanted = getenv("ZOETROPE_ISA");
@@ -62,6 +66,11 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
     single ? zt_prepare_ready_single(ready, tracer) : zt_prepare_ready_double(ready, tracer);
     ready->kernel = select_kernel(ready->precision);
     return ZT_OK;
+}
+
+zt_status zt_outline_make(zt_outline *out, const zt_ready *ready, zt_arena *arena) {
+    bool single = ready->precision == ZT_PRECISION_SINGLE;
+    return (single ? zt_outline_single : zt_outline_double)(out, ready->tracer, arena);
 }
 
 size_t zt_kernel_work_size(void) {

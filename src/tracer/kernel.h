@@ -36,6 +36,8 @@ typedef struct zt_rays {
     int count;
     /* Which of zt_radiance are asked for besides the light. */
     bool wants_path, wants_cover;
+    /* Grows by what the rays touch; NULL: nobody asks. */
+    struct zt_footprint *footprint;
 } zt_rays;
 
 /* How many rays of each kind were traced. */
@@ -53,7 +55,7 @@ typedef struct zt_radiance {
      * cells, and the same lamps are hidden from there. */
     alignas(64) uint32_t path[ZT_BATCH];
     alignas(64) float a[ZT_BATCH]; /* where asked for: 1 of a ray that met something, or 0 */
-    zt_ray_counts counts; /* added to */
+    zt_ray_counts counts;          /* added to */
 } zt_radiance;
 
 /* One ray asked about by itself. `source` is -1 for a ray that begins anywhere, or what

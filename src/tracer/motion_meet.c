@@ -47,14 +47,17 @@ DEFINE_SOLID(torus, ZT_PRIMITIVE_TORUS)
     static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,         \
                              const zt_poses *restrict s, real unit, int32_t index, int first,  \
                              int count, real tie) {                                            \
-        const real more = 1 + tie, less = 1 - tie, share = tie / TIE;                          \
+        const real more = 1 + tie, share = tie / TIE;                                          \
         (void)unit;                                                                            \
         WIDE_LOOP for (int j = 0; j < count; j++) {                                            \
             int i = first + j;                                                                 \
             int32_t left = zt_leaving(from->source[i], index);                                 \
             real t = kind##_MEET, nearest = rays->t[i], near = share * from->near[i];          \
             int32_t hit = rays->hit[i], later = index > hit;                                   \
-            int32_t before = t * more + near < nearest, no_later = t * less - near <= nearest; \
+            int32_t before = t * more + near < nearest, after = nearest * more + near < t;     \
+            int32_t no_later = (t < REAL_INFINITY) & (after == 0);                             \
+            int32_t close = zt_is_close(t, nearest, tie, near) & (index != hit);               \
+            rays->close[i] = zt_closer(rays->close[i], close);                                 \
             int32_t nearer = (later & before) | ((1 - later) & no_later);                      \
             rays->t[i] = nearer ? t : nearest;                                                 \
             rays->hit[i] = nearer ? index : hit;                                               \

@@ -8,6 +8,10 @@
 #include "tracer/kernel.h"
 #include "tracer/real.h"
 
+/* Values of zt_batch.close: one more was met that near; and so that what the nearest is might
+ * depend on the order. */
+enum { CLOSE_ONE = 1, CLOSE_SEVERAL = 2 };
+
 /* A batch is a multiple of any number of lanes. */
 enum { ZT_BATCH_LANES = 16 };
 
@@ -37,6 +41,9 @@ typedef struct zt_batch {
     alignas(64) real t[ZT_BATCH]; /* hits count in (0, t); then the distance of the nearest */
     alignas(64) int32_t hit[ZT_BATCH];  /* the index of the primitive, or -1 */
     alignas(64) int32_t part[ZT_BATCH]; /* of a mesh: which triangle */
+    /* Of rays that ask many things in any order: whether others were about as near as the
+     * nearest. */
+    alignas(64) int32_t close[ZT_BATCH];
     int count;
 } zt_batch;
 
@@ -52,5 +59,16 @@ static inline int32_t zt_leaving(int32_t source, int32_t index) {
 
 /* What roundings can tell apart, as a share of the largest number around. */
 #define TIE (16 * REAL_ROUNDING)
+
+/* Of two distances, whether they are so near to each other that a third one between them might
+ * be as near as roundings can tell to both, give or take `near`. */
+static inline int32_t zt_is_close(real a, real b, real tie, real near) {
+    return real_abs(a - b) <= 4 * (tie * real_min(a, b) + near);
+}
+
+/* What was close becomes CLOSE_ONE, then CLOSE_SEVERAL. */
+static inline int32_t zt_closer(int32_t close, int32_t is_close) {
+    return close | is_close | (close & is_close) << 1;
+}
 
 #endif

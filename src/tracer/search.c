@@ -81,7 +81,8 @@ static void look_ahead(lanes *restrict l, const search *restrict s, int first) {
             l->t[j] = rays->hit[first + j] < 0 ? until : 0;
         }
     else {
-        const real more = 1 + 2 * s->tie, share = 2 * s->tie / TIE;
+        /* What is as near but for roundings is found in any order. */
+        const real more = 1 + 2 * s->tie + 8 * REAL_ROUNDING, share = 2 * s->tie / TIE;
         WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) l->t[j] =
             rays->t[first + j] * more + share * near[first + j];
     }
@@ -267,7 +268,7 @@ static void take(const search *restrict s) {
     zt_batch *restrict rays = s->rays;
     const real *restrict near = rays->from->near;
     const int32_t index = s->index;
-    const real more = 1 + s->tie, less = 1 - s->tie, share = s->tie / TIE;
+    const real more = 1 + s->tie, share = s->tie / TIE;
     for (int at = 0; at < s->packed.count; at += ZT_BATCH_LANES) {
         const int first = s->first[at / ZT_BATCH_LANES];
         WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
@@ -276,8 +277,12 @@ static void take(const search *restrict s) {
             real slack = share * near[first + j];
             /* As in the loops over lanes of tracer/intersect.c. */
             int32_t later = index > hit;
-            int32_t before = t * more + slack < nearest, no_later = t * less - slack <= nearest;
+            int32_t before = t * more + slack < nearest, after = nearest * more + slack < t;
+            int32_t no_later = after == 0;
             int32_t nearer = (part >= 0) & ((later & before) | ((1 - later) & no_later));
+            int32_t close = (part >= 0) & (index != hit) &
+                            zt_is_close(t, nearest, s->tie + 4 * REAL_ROUNDING, slack);
+            rays->close[first + j] |= close ? CLOSE_SEVERAL : 0; /* t is off by roundings */
             rays->t[first + j] = nearer ? t : nearest;
             rays->hit[first + j] = nearer ? index : hit;
             rays->part[first + j] = nearer ? part : rays->part[first + j];

@@ -1,0 +1,196 @@
+#include "tracer/footprint.h"
+
+#include <math.h>
+
+#include "tracer/bundle.h"
+
+/* Where more things moved than this, those that follow each other in the scene share a box. */
+enum { PLACES_MAX = 32 };
+
+/* How many times more room than an intersection's roundings need there is: for what lies within
+ * roundings of a ray's end, and for the way from there to where further rays begin. */
+#define ROOM 8
+
+static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
+
+/* ---- what differs ---------------------------------------------------------------------------
+ */
+
+static zt_bvh_box around(const zt_bvh_box *a, const zt_bvh_box *b) {
+    zt_bvh_box all;
+    for (int i = 0; i < 3; i++) {
+        all.low[i] = fminf(a->low[i], b->low[i]);
+        all.high[i] = fmaxf(a->high[i], b->high[i]);
+    }
+    return all;
+}
+
+static bool overlap(const zt_bvh_box *a, const zt_bvh_box *b) {
+    bool meet = true;
+    for (int i = 0; i < 3; i++) meet &= a->low[i] <= b->high[i] && b->low[i] <= a->high[i];
+    return meet;
+}
+
+/* That something was, or is, there. */
+static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now) {
+    bool bounded = !thing->unbounded;
+    for (int i = 0; i < 3; i++) bounded &= thing->box.low[i] <= thing->box.high[i];
+    d->all |= !bounded;
+    d->stretch = fmaxf(d->stretch, thing->stretch);
+    d->places[d->place_count++] = (zt_difference){thing->box, now};
+}
+
+/* One of the two may be NULL, where a thing comes or goes. */
+static void add_thing(zt_differences *d, const zt_outline_thing *before,
+                      const zt_outline_thing *now, bool same_numbers) {
+    bool drawn = !same_numbers && ((before && before->moves) || (now && now->moves));
+    bool moved = !before || !now || !same(before->shape, now->shape) || drawn;
+    if (!moved && same(before->looks, now->looks)) return;
+    d->objects |= zt_footprint_bit(now ? now->object : before->object);
+    if (!moved) return;
+    if (before) add_place(d, before, false);
+    if (now) add_place(d, now, true);
+    if (!before || !now || !overlap(&before->box, &now->box)) return;
+    d->place_count--;
+    d->places[d->place_count - 1] = (zt_difference){around(&before->box, &now->box), true};
+}
+
+static void add_things(zt_differences *d, const zt_outline *before, const zt_outline *now,
+                       bool same_numbers) {
+    int32_t i = 0, k = 0;
+    while (i < before->thing_count || k < now->thing_count) {
+        const zt_outline_thing *a = i < before->thing_count ? &before->things[i] : NULL;
+        const zt_outline_thing *b = k < now->thing_count ? &now->things[k] : NULL;
+        if (a && b && a->object != b->object) *(a->object < b->object ? &b : &a) = NULL;
+        add_thing(d, a, b, same_numbers);
+        i += a != NULL;
+        k += b != NULL;
+    }
+}
+
+static void share_boxes(zt_differences *d) {
+    int32_t share = (d->place_count + PLACES_MAX - 1) / PLACES_MAX, kept = 0;
+    for (int32_t i = 0; i < d->place_count; i++) {
+        zt_difference place = d->places[i];
+        if (i % share > 0) {
+            zt_difference *shared = &d->places[kept - 1];
+            place.box = around(&shared->box, &place.box);
+            place.now |= shared->now;
+            *shared = place;
+        } else {
+            d->places[kept++] = place;
+        }
+    }
+    d->place_count = kept;
+}
+
+static void add_lamps(zt_differences *d, const zt_outline *before, const zt_outline *now,
+                      bool same_numbers) {
+    for (int32_t i = 0; i < now->lamp_count; i++) {
+        const zt_outline_lamp *a = &before->lamps[i], *b = &now->lamps[i];
+        uint64_t bit = zt_footprint_bit(b->light);
+        d->light |= !same(a->place, b->place);
+        if (!same_numbers && (a->drawn || b->drawn)) d->drawn_lamps |= bit;
+        if (!same(a->power, b->power)) d->dimmed_lamps |= bit;
+    }
+    d->light |= !same(before->ambient, now->ambient) ||
+                (!same_numbers && (before->ambient_moves || now->ambient_moves));
+}
+
+zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
+                              const zt_outline *now, bool same_numbers, zt_arena *arena) {
+    *d = (zt_differences){.now = now, .stretch = 1};
+    d->all = !same(before->rest, now->rest);
+    if (d->all) return ZT_OK;
+    size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
+    d->places = ZT_PUSH(arena, zt_difference, most);
+    if (!d->places) return ZT_EMEMORY;
+    add_things(d, before, now, same_numbers);
+    share_boxes(d);
+    add_lamps(d, before, now, same_numbers);
+    return ZT_OK;
+}
+
+/* ---- what that touches ----------------------------------------------------------------------
+ */
+
+static double size_of(const zt_bvh_box *box) {
+    double size = 0;
+    for (int i = 0; i < 3; i++)
+        size = most_of(size, most_of(fabs((double)box->low[i]), fabs((double)box->high[i])));
+    return size;
+}
+
+/* Narrows the shares of a way, from *low to *high of it, to those where a + share b <= 0; what
+ * is no number narrows nothing. */
+static void cut(double *low, double *high, double a, double b) {
+    double at = -a / b;
+    if (b > 0 && at < *high) *high = at;
+    if (b < 0 && at > *low) *low = at;
+    if (b == 0 && a > 0) *high = -1;
+}
+
+/* False only where no straight way from one box to another one meets a third: after a share s
+ * of such a way it is in a box between them, so much from the one's sides to the other's. */
+static bool passes(const zt_bvh_box *from, const zt_bvh_box *to, const zt_bvh_box *box,
+                   float stretch) {
+    double room = (size_of(from) + size_of(to) + size_of(box)) * (double)stretch *
+                  (double)(ROOM * BOX_ROUNDINGS * REAL_ROUNDING);
+    double low = 0, high = 1;
+    for (int i = 0; i < 3; i++) {
+        double least = (double)from->low[i], most = (double)from->high[i];
+        double above = least - ((double)box->high[i] + room);
+        double below = (double)box->low[i] - room - most;
+        double rises = (double)to->low[i] - least, falls = most - (double)to->high[i];
+        if ((above > 0 && above + rises > 0) || (below > 0 && below + falls > 0)) return false;
+        cut(&low, &high, above, rises);
+        cut(&low, &high, below, falls);
+    }
+    return !(low > high);
+}
+
+static zt_box box_of(const zt_bvh_box *b) {
+    return (zt_box){{b->low[0], b->low[1], b->low[2]}, {b->high[0], b->high[1], b->high[2]}};
+}
+
+/* Whether rays of a step may meet a place. */
+static bool rays_meet(const zt_footstep *step, const zt_bvh_box *place, float stretch) {
+    if (!step->leaves && !passes(&step->origins, &step->points, place, stretch)) return false;
+    zt_bundle bundle = {.origins = box_of(&step->origins),
+                        .directions = box_of(&step->directions),
+                        .source = -1};
+    zt_box box = box_of(place);
+    return zt_bundle_meets(&bundle, &box, ROOM * stretch);
+}
+
+/* Whether the shadow rays of a step's points may meet a place. */
+static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const zt_outline *now,
+                         const zt_bvh_box *place, float stretch) {
+    for (int32_t i = 0; i < now->lamp_count; i++) {
+        const zt_outline_lamp *lamp = &now->lamps[i];
+        if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->light)) &&
+            passes(&step->points, &lamp->bounds, place, stretch))
+            return true;
+    }
+    return false;
+}
+
+static bool place_touches(const zt_footprint *f, const zt_differences *d,
+                          const zt_difference *place) {
+    for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
+        const zt_footstep *step = &f->steps[i];
+        if (place->now && rays_meet(step, &place->box, d->stretch)) return true;
+        if (step->ends && shadows_meet(f, step, d->now, &place->box, d->stretch)) return true;
+    }
+    return false;
+}
+
+bool zt_footprint_touched(const zt_footprint *f, const zt_differences *d) {
+    if (d->all || f->restless || (d->light && f->steps[0].ends)) return true;
+    if ((d->objects & f->met) || (d->drawn_lamps & f->faced) || (d->dimmed_lamps & f->lit))
+        return true;
+    if (f->doubtful && d->place_count > 0) return true;
+    for (int32_t i = 0; i < d->place_count; i++)
+        if (place_touches(f, d, &d->places[i])) return true;
+    return false;
+}
