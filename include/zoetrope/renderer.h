@@ -21,6 +21,8 @@ typedef struct zt_render_settings {
     int threads;            /* one a core by default; the images do not depend on it */
     zt_precision precision; /* where single is not enough for a frame, a warning tells, once */
     unsigned aovs;          /* bits of zt_aov, besides those that the description asks for */
+    bool no_reuse;          /* nothing is copied from the frame before, which changes no bit */
+    bool check_reuse; /* each frame is rendered both ways, and an error where a bit differs */
 } zt_render_settings;
 
 /* Is told after each frame of a sequence, and asked often, from any thread, whether to stop. */

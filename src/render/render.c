@@ -9,6 +9,7 @@
 #include "base/diag.h"
 #include "render/edges.h"
 #include "render/refine.h"
+#include "render/reuse.h"
 #include "render/work.h"
 #include "tracer/isa.h"
 
@@ -188,7 +189,7 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     average(&own->sum, own->taken, count);
     find_alpha(own->sum.a, own->taken, count, job->transparent);
     fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
-                count == most);
+                count == most && !f->keeps); /* what is kept is read again */
     if (f->at_edges)
         fill_paths(f->work->canvas.path, f->image->width, own->light.path, own->column,
                    own->row, count, count == most);
@@ -204,9 +205,25 @@ static bool render_tile(zt_frame *f, int index, int worker) {
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
                  min_int(TILE_SIDE, f->image->height - y)};
     int most = f->at_edges ? ZT_BATCH : block_size(f->job->sampling.max);
-    for (int first = 0; first < ZT_BATCH; first += most)
-        if (!render_block(f, &f->work->threads[worker], area, first, most)) return false;
-    return true;
+    zt_render_thread *own = &f->work->threads[worker];
+    if (f->copies && !f->job->reuse->touched[index]) {
+        zt_reuse_copy(f, x, y, area.width, area.height);
+        return true;
+    }
+    if (f->keeps)
+        memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
+               ZT_REUSE_PARTS * sizeof(zt_footprint));
+    bool done = true;
+    for (int first = 0; first < ZT_BATCH && done; first += most) {
+        int64_t left_out = own->count.left_out;
+        if (f->keeps) own->rays.footprint = zt_reuse_footprint(f->job->reuse, index, first);
+        done = render_block(f, own, area, first, most);
+        /* What is left out is told in each frame. */
+        if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
+    }
+    own->rays.footprint = NULL;
+    if (f->keeps && done) zt_reuse_keep(f, x, y, area.width, area.height);
+    return done;
 }
 
 static void render_run(void *user, int index, int worker) {
@@ -257,7 +274,10 @@ static zt_status render_all(zt_frame *f) {
     bool even = s->max == 1 || (s->min >= s->max && !s->edges && !zt_warp_is_signed(job->warp));
     if (even) {
         fill_channels(f->image, s);
-        return render_tiles(f) ? ZT_OK : ZT_ESTOPPED;
+        ZT_TRY(zt_reuse_begin(f));
+        bool done = render_tiles(f);
+        zt_reuse_end(f, done);
+        return done ? ZT_OK : ZT_ESTOPPED;
     }
     zt_canvas *canvas = &f->work->canvas;
     ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height,
@@ -287,7 +307,7 @@ zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job
                   .run = run_length(columns * rows, thread_count)};
     for (int i = 0; i < thread_count; i++) work->threads[i].count = (zt_render_count){0};
     zt_status status = render_all(&f);
-    *count = (zt_render_count){0};
+    *count = (zt_render_count){.tiles = f.tile_count, .tiles_copied = f.tiles_copied};
     for (int i = 0; i < thread_count; i++) {
         const zt_render_count *own = &work->threads[i].count;
         count->left_out += own->left_out;

@@ -21,10 +21,19 @@ typedef struct zt_render_work zt_render_work;
 zt_status zt_render_work_push(zt_render_work **work, zt_arena *arena, int thread_count);
 void zt_render_work_close(zt_render_work *work); /* may be NULL */
 
+/* What is kept of one frame for the next one (render/reuse.h); of a run. `tireless` keeps
+ * trying where little comes of it. ZT_EMEMORY. */
+typedef struct zt_reuse zt_reuse;
+zt_status zt_reuse_open(zt_reuse **reuse, bool tireless);
+void zt_reuse_close(zt_reuse **reuse);
+
 typedef struct zt_render_job {
     const zt_ready *scene;
     const zt_lens *lens;
     zt_sampling sampling;
+    zt_reuse *reuse;  /* or NULL: nothing is copied; else */
+    zt_hash view;     /* says which pictures' samples are the same rays: of the same lens, size,
+                         sampling and channels */
     bool transparent; /* A is how many samples met something, as colours count; else 1 */
     const zt_warp *warp; /* the sampling's filter made ready */
     const zt_thin
@@ -40,6 +49,7 @@ typedef struct zt_render_count {
     int64_t left_out; /* samples that were not finite */
     int64_t samples;
     zt_ray_counts rays;
+    int64_t tiles, tiles_copied;
 } zt_render_count;
 
 /* Renders into all of `image`, and into its further channels. The same bits for any number of

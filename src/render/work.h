@@ -43,6 +43,9 @@ typedef struct zt_frame {
     int tile_columns, tile_count;
     int run;       /* tiles that a thread takes at a time */
     bool at_edges; /* first one sample in the middle of each pixel, then more at edges alone */
+    /* Of the job's reuse: it takes down what is rendered; could copy; does so. */
+    bool keeps, tries, copies;
+    int64_t tiles_copied;
     atomic_bool stopped;
 } zt_frame;
 

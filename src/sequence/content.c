@@ -174,6 +174,25 @@ zt_hash zt_shutter_content(const zt_exposure *exposure) {
     return (zt_hash){s.key, s.other};
 }
 
+zt_hash zt_shutter_view(const zt_exposure *exposure) {
+    const zt_camera *first = &exposure->moments->camera;
+    bool moves = false;
+    stream s;
+    s.key = s.other = 0;
+    s.count = 0;
+    put_camera(&s, first);
+    for (int32_t i = 1; i < exposure->moment_count; i++)
+        moves |= memcmp(&exposure->moments[i].camera, first, sizeof *first) != 0;
+    /* Of a still one, what else moves may ask for more moments or fewer. */
+    for (int32_t i = 1; moves && i < exposure->moment_count; i++) {
+        put(&s, exposure->times[i]);
+        put(&s, exposure->steps[i - 1]);
+        put_camera(&s, &exposure->moments[i].camera);
+    }
+    flush(&s);
+    return (zt_hash){s.key, s.other};
+}
+
 void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure *exposure,
                      const zt_sampling *sampling) {
     const uint64_t seed = zt_random_key(0, sampling->seed);

@@ -326,6 +326,7 @@ static zt_status climb_all(climb *c) {
 
 static zt_status open_and_climb(climb *c) {
     zt_render_settings settings = c->settings->render;
+    settings.no_reuse = true; /* what is measured is rendering */
     settings.samples = 0; /* each rung has its own */
     ZT_TRY(zt_renderer_open(&c->renderer, c->animation, &settings, c->listener));
     zt_output_format format = zt_renderer_format(c->renderer);

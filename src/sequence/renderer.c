@@ -6,9 +6,11 @@
 
 #include "base/clock.h"
 #include "base/diag.h"
+#include "base/hash.h"
 #include "keyframe/animation.h"
 #include "render/guides.h"
 #include "sequence/pacing.h"
+#include "sequence/reuse_check.h"
 #include "sequence/shutter.h"
 
 enum { THREADS_MAX = 1024, SAMPLES_MAX = 65536 };
@@ -47,14 +49,15 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
         r->sampling.error = 0;
         r->sampling.edges = false;
     }
-    r->format = (zt_output_format){settings->width ? settings->width : film->width,
-                                   settings->height ? settings->height : film->height,
-                                   film->rate,
-                                   film->view,
-                                   0,
-                                   NULL};
+    r->format = (zt_output_format){.width = settings->width ? settings->width : film->width,
+                                   .height = settings->height ? settings->height : film->height,
+                                   .rate = film->rate,
+                                   .view = film->view};
+    r->checks_reuse = settings->check_reuse;
     zt_status status =
         open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
+    if (status == ZT_OK && !settings->no_reuse)
+        status = zt_reuse_open(&r->reuse, settings->check_reuse);
     if (status != ZT_OK) zt_renderer_close(&r);
     *out = r;
     return status;
@@ -66,6 +69,7 @@ void zt_renderer_close(zt_renderer **slot) {
     zt_pool_close(&r->pool);
     zt_meshes_close(&r->meshes);
     zt_render_work_close(r->work);
+    zt_reuse_close(&r->reuse);
     zt_arena_free(&r->run);
     zt_arena_free(&r->frame);
     zt_pacing_free(&r->pacing);
@@ -74,6 +78,18 @@ void zt_renderer_close(zt_renderer **slot) {
 }
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
+
+/* What decides a picture's rays. */
+static zt_hash view_of(const zt_renderer *r, const zt_exposure *exposure) {
+    const zt_sampling *s = &r->sampling;
+    const zt_hash cameras = zt_shutter_view(exposure);
+    const double numbers[] = {r->format.width, r->format.height, r->animation->film.transparent,
+                              s->min,          s->max,           s->error,
+                              s->mean_max,     s->edges,         s->filter,
+                              s->filter_width, s->seed,          s->seed_fixed};
+    const zt_hash parts[] = {cameras, zt_hash_bytes(numbers, sizeof numbers)};
+    return zt_hash_bytes(parts, sizeof parts);
+}
 
 zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     double begun_s = zt_clock_s();
@@ -96,6 +112,7 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
         ZT_TRY(zt_thin_prepare(&t->job.thin, &t->exposure, r->format.width, r->format.height,
                                &r->frame));
     zt_shutter_keys(&t->job.place_key, &t->job.frame_key, &t->exposure, &r->sampling);
+    t->job.view = view_of(r, &t->exposure);
     r->cost =
         (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
     return ZT_OK;
@@ -108,14 +125,15 @@ zt_status zt_renderer_choices(zt_frame_choices *choices, zt_renderer *r, int64_t
     return ZT_OK;
 }
 
-zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
-                           const zt_watcher *watcher) {
+static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *reuse,
+                      const zt_watcher *watcher) {
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
     zt_taking t;
     zt_render_count count;
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_doubt(r, &t.ready, &t.exposure, &t.division, frame);
+    t.job.reuse = reuse;
     t.job.stopped = watcher ? watcher->stopped : NULL;
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();
@@ -124,11 +142,18 @@ zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = count.left_out;
     r->cost.rays = count.rays;
+    r->cost.tiles = count.tiles;
+    r->cost.tiles_copied = count.tiles_copied;
     if (count.left_out > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",
                 frame, count.left_out);
-    return ZT_OK;
+    return reuse && r->checks_reuse ? zt_reuse_check(r, &t, frame, image) : ZT_OK;
+}
+
+zt_status zt_renderer_take(zt_renderer *r, int64_t frame, zt_image *image,
+                           const zt_watcher *watcher) {
+    return take(r, frame, image, NULL, watcher);
 }
 
 zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
@@ -137,7 +162,7 @@ zt_status zt_renderer_frame(zt_renderer *r, int64_t frame, zt_image *image,
     double begun_s = zt_clock_s();
     ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
     r->sampling = sampling;
-    zt_status status = zt_renderer_take(r, frame, image, watcher);
+    zt_status status = take(r, frame, image, r->reuse, watcher);
     r->sampling = own;
     ZT_TRY(status);
     return zt_pacing_done(r, frame, &sampling, zt_clock_s() - begun_s);

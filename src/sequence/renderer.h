@@ -15,6 +15,7 @@ typedef struct zt_frame_cost {
     double freeze_s, prepare_s, render_s;
     zt_ray_counts rays;
     int64_t left_out_count; /* samples that were not finite */
+    int64_t tiles, tiles_copied;
 } zt_frame_cost;
 
 typedef struct zt_pacing zt_pacing; /* sequence/pacing.h */
@@ -31,6 +32,8 @@ struct zt_renderer {
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
     zt_render_work *work;
+    zt_reuse *reuse; /* of the frame before; NULL: nothing is copied */
+    bool checks_reuse;
     zt_frame_cost cost; /* of the last frame */
     const struct zt_manifest
         *followed;       /* whose samples frames take; NULL: none's. Not its own */
@@ -57,8 +60,8 @@ extern const char zt_arithmetic[];
 /* All that comes before rendering. */
 zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t frame);
 
-/* Renders a frame with the renderer's sampling, whatever else says how many samples it takes.
- */
+/* Renders a frame with the renderer's sampling, whatever else says how many samples it takes,
+ * and copies nothing. */
 zt_status zt_renderer_take(zt_renderer *renderer, int64_t frame, zt_image *image,
                            const zt_watcher *watcher);
 

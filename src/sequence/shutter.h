@@ -40,6 +40,9 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
 void zt_shutter_keys(uint64_t *place_key, uint64_t *frame_key, const zt_exposure *exposure,
                      const zt_sampling *sampling);
 
+/* A hash of the camera while the shutter is open. */
+zt_hash zt_shutter_view(const zt_exposure *exposure);
+
 /* A hash of all that an exposure holds, but for what is in its meshes. */
 zt_hash zt_shutter_content(const zt_exposure *exposure);
 
