@@ -43,7 +43,7 @@ typedef struct meeting {
     bool finished[ZT_BVH_RAYS];
 } meeting;
 
-static void note_visit(void *user, int32_t box, int first, uint32_t lanes) {
+static uint32_t note_visit(void *user, int32_t box, int first, uint32_t lanes) {
     meeting *m = user;
     bool good = box >= 0 && box < m->box_count && first % ZT_BVH_LANES == 0 && lanes != 0 &&
                 lanes >> ZT_BVH_LANES == 0;
@@ -54,6 +54,7 @@ static void note_visit(void *user, int32_t box, int first, uint32_t lanes) {
         m->visited[box][first + lane] = 1;
         m->visits++;
     }
+    return 0;
 }
 
 /* Where ray i enters a box, with 64 bits; infinite where it does not before its far. What the
@@ -193,7 +194,8 @@ typedef struct search {
     long double nearest[ZT_BVH_RAYS];
 } search;
 
-static void shorten(void *user, int32_t box, int first, uint32_t lanes) {
+static uint32_t shorten(void *user, int32_t box, int first, uint32_t lanes) {
+    const uint32_t all = lanes;
     search *s = user;
     for (int i = first; lanes; i++, lanes >>= 1) {
         if (!(lanes & 1)) continue;
@@ -204,6 +206,7 @@ static void shorten(void *user, int32_t box, int first, uint32_t lanes) {
         }
         s->m->visits++;
     }
+    return all;
 }
 
 static void rays_that_are_shortened_find_the_nearest(void **state) {
@@ -240,7 +243,8 @@ static void rays_that_are_shortened_find_the_nearest(void **state) {
     zt_bvh_free(&bvh);
 }
 
-static void finish(void *user, int32_t box, int first, uint32_t lanes) {
+static uint32_t finish(void *user, int32_t box, int first, uint32_t lanes) {
+    const uint32_t all = lanes;
     meeting *m = user;
     note_visit(user, box, first, lanes);
     for (int i = first; lanes; i++, lanes >>= 1) {
@@ -248,6 +252,7 @@ static void finish(void *user, int32_t box, int first, uint32_t lanes) {
         m->rays.far[i] = i % 3 == 1 ? -1 : 0;
         m->finished[i] = true;
     }
+    return all;
 }
 
 /* Ten boxes one behind the other, and a ray through them all. */
@@ -338,7 +343,7 @@ typedef struct nest {
     meeting outer, *inside;
 } nest;
 
-static void visit_nest(void *user, int32_t box, int first, uint32_t lanes) {
+static uint32_t visit_nest(void *user, int32_t box, int first, uint32_t lanes) {
     nest *n = user;
     note_visit(&n->outer, box, first, lanes);
     line_up(n->inside);
@@ -347,6 +352,7 @@ static void visit_nest(void *user, int32_t box, int first, uint32_t lanes) {
     zt_bvh_look(n->inner, &n->inside->rays, ZT_BVH_SCATTERED, note_visit, n->inside);
     n->outer.mistakes += n->inside->mistakes;
     n->outer.mistakes += n->inside->visits != 10 * __builtin_popcount(lanes);
+    return 0;
 }
 
 static void visitors_may_look_further(void **state) {
@@ -451,12 +457,14 @@ typedef struct shot {
     int32_t triangle[ZT_BVH_RAYS];
 } shot;
 
-static void meet(void *user, int32_t box, int first, uint32_t lanes) {
+static uint32_t meet(void *user, int32_t box, int first, uint32_t lanes) {
+    const uint32_t all = lanes;
     shot *s = user;
     for (int i = first; lanes; i++, lanes >>= 1)
         if (lanes & 1)
             zt_meet_cluster(&s->rays.far[i], &s->triangle[i], &s->clusters->clusters[box],
                             &s->leaning, i);
+    return all;
 }
 
 /* At corners, edges and now and then the inside of triangles, from within. */

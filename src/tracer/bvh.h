@@ -55,8 +55,8 @@ typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
 /* Calls `visit` for boxes that rays may meet before their `far`, with those of the rays
  * first .. first + 15 whose bits are set in `lanes`: the lowest bit for ray number `first`, a
  * multiple of 16. The visitor may make `far` of those rays less, 0 or negative to be done with
- * a ray; it may look into another hierarchy. Boxes come in about the order of distance, some of
- * them though no ray meets them.
+ * a ray, and returns which ones' it made; it may look into another hierarchy. Boxes come in
+ * about the order of distance, some of them though no ray meets them.
  *
  * No box is passed by that a ray, its numbers taken as exact, touches before `far`, for origins
  * within 2^26 times the size of what all boxes make up (or 2^2 times their largest coordinate).
@@ -64,7 +64,7 @@ typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
  * giants and dwarfs should not share a hierarchy. Roundings of the numbers themselves are the
  * caller's to allow for, by larger boxes, or by moving origins near in double precision first.
  */
-typedef void zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
+typedef uint32_t zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
 void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
                  void *user);
 

@@ -141,9 +141,10 @@ ZT_CLONES static void visit_box(const struct RTCIntersectFunctionNArguments *arg
         lanes |= (uint32_t)(arguments->valid[k] & (far[i] > 0)) << i;
     }
     if (!lanes) return;
-    l->visit(l->user, (int32_t)arguments->primID, l->first, lanes);
-    for (unsigned k = 0; k < lane_count; k++) {
+    uint32_t nearer = l->visit(l->user, (int32_t)arguments->primID, l->first, lanes);
+    for (unsigned k = 0; nearer && k < lane_count; k++) {
         unsigned i = number[k] % LANES;
+        if (!(nearer >> i & 1)) continue;
         double left = (double)far[i] * l->stretch[i] - l->moved[i];
         packet_far[k] = far[i] > 0 ? (float)left : -INFINITY;
     }

@@ -245,7 +245,7 @@ static void pack(search *restrict s, int first, uint32_t set) {
 /* ---- triangles ------------------------------------------------------------------------------
  */
 
-static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
+static uint32_t visit_cluster(void *user, int32_t box, int first, uint32_t set) {
     search *s = user;
     const zt_cluster *cluster = &s->placed->built->clusters.clusters[box];
     uint32_t found = 0;
@@ -257,10 +257,11 @@ static void visit_cluster(void *user, int32_t box, int first, uint32_t set) {
             if (zt_meet_cluster(&s->t[j], &s->part[j], cluster, &s->leaning, j))
                 found |= 1u << (j - first);
         }
-    for (; found; found &= found - 1) {
-        int j = first + __builtin_ctz(found);
+    for (uint32_t left = found; left; left &= left - 1) {
+        int j = first + __builtin_ctz(left);
         s->packed.far[j] = s->any ? -1 : (float)s->t[j] * LOOK_FURTHER;
     }
+    return found;
 }
 
 /* What was found becomes the batch's. */
@@ -325,7 +326,7 @@ typedef struct crowd_search {
 
 /* Some rays against one primitive of a crowd. Others of their group are asked as well, since it
  * costs nothing. */
-static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
+static uint32_t visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     crowd_search *c = user;
     zt_batch *rays = c->rays;
     int32_t index = c->tracer->crowd_primitives[box];
@@ -344,6 +345,7 @@ static void visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     else
         for (int i = first; i < first + ZT_BATCH_LANES; i++)
             c->packed.far[i] = (float)(rays->t[i] - c->begin[i]) * LOOK_FURTHER;
+    return (1u << ZT_BATCH_LANES) - 1;
 }
 
 /* Where a ray enters a box, or 0 where it begins within or never does. */

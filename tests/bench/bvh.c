@@ -224,12 +224,14 @@ typedef struct own {
     bool any;
 } own;
 
-ZT_CLONES static void meet(void *user, int32_t box, int first, uint32_t lanes) {
+ZT_CLONES static uint32_t meet(void *user, int32_t box, int first, uint32_t lanes) {
+    const uint32_t all = lanes;
     own *b = user;
     for (int i = first; lanes; i++, lanes >>= 1)
         if ((lanes & 1) && zt_meet_cluster(&b->rays.far[i], &b->triangle[i],
                                            &b->clusters->clusters[box], &b->leaning, i))
             if (b->any) b->rays.far[i] = -1;
+    return all;
 }
 
 ZT_CLONES static void ask_own(const way *w, rays *r, int first, bool any) {
@@ -339,7 +341,7 @@ static void place(crowd *c, uint64_t frame) {
         }
 }
 
-ZT_CLONES static void meet_ball(void *user, int32_t box, int first, uint32_t lanes) {
+ZT_CLONES static uint32_t meet_ball(void *user, int32_t box, int first, uint32_t lanes) {
     crowd *c = user;
     const zt_bvh_box *b = &c->boxes[box];
     zt_bvh_rays *r = &c->rays;
@@ -355,6 +357,7 @@ ZT_CLONES static void meet_ball(void *user, int32_t box, int first, uint32_t lan
         bool met = (lanes >> lane & 1) & (inside > 0) & (t > 0) & (t < r->far[i]);
         r->far[i] = met ? t : r->far[i];
     }
+    return lanes;
 }
 
 static void measure_crowd(int32_t count, zt_bvh_builder *builder, const char *threads) {
