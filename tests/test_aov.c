@@ -32,16 +32,17 @@ static void names(void **state) {
         together |= found;
     }
     assert_int_equal(together, ZT_AOV_ALL);
-    const char *const others[] = {"", "z", "P.X", "depth", "id", "Z,N", "al"};
+    const char *const others[] = {"", "z", "P.X", "depth", "id", "Z,N", "al", "motion.x"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         assert_false(zt_aov_find(&found, others[i]));
 }
 
 static void channels(void **state) {
     (void)state;
-    static const char *const all[] = {"Z",           "P.X",     "P.Y",  "P.Z",
-                                      "N.X",         "N.Y",     "N.Z",  "id.object",
-                                      "id.material", "samples", "error"};
+    static const char *const all[] = {"Z",         "P.X",         "P.Y",      "P.Z",
+                                      "N.X",       "N.Y",         "N.Z",      "albedo.R",
+                                      "albedo.G",  "albedo.B",    "motion.x", "motion.y",
+                                      "id.object", "id.material", "samples",  "error"};
     zt_image *image;
     assert_int_equal(zt_image_create(&image, 3, 2), ZT_OK);
     assert_int_equal(zt_image_add_aovs(image, 0), ZT_OK);

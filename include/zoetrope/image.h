@@ -37,9 +37,10 @@ typedef struct zt_image_info {
     zt_hash key;     /* of all that decides the pixels */
     double render_s; /* seconds of wall time */
     uint64_t seed;
-    /* By rows, for points as rows on the left of them, as OpenEXR has it: to the camera's space
-     * (it looks along -z, y is up), and from there to what x and y / w are -1..1 in over the
-     * picture, left to right, bottom to top. All zeros where there is no such matrix. */
+    /* By rows, for points as rows on the left of them; the spaces are those of OpenEXR's
+     * standard attributes worldToCamera (x to the right, y up, z ahead) and worldToNDC (x / w
+     * and y / w are 0, 0 in the picture's upper left corner and 1, 1 in its lower right one).
+     * All zeros where there is no such matrix. */
     double world_to_camera[16], world_to_ndc[16];
     const char *title, *description; /* the film's name, and its file's */
     const char *view;                /* how a display shows it: a zt_view's name */

@@ -11,6 +11,8 @@ static const struct {
 } rows[] = {{ZT_AOV_Z, "Z", {"Z"}},
             {ZT_AOV_P, "P", {"P.X", "P.Y", "P.Z"}},
             {ZT_AOV_N, "N", {"N.X", "N.Y", "N.Z"}},
+            {ZT_AOV_ALBEDO, "albedo", {"albedo.R", "albedo.G", "albedo.B"}},
+            {ZT_AOV_MOTION, "motion", {"motion.x", "motion.y"}},
             {ZT_AOV_OBJECT, "id.object", {"id.object"}},
             {ZT_AOV_MATERIAL, "id.material", {"id.material"}},
             {ZT_AOV_SAMPLES, "samples", {"samples"}},
@@ -26,7 +28,7 @@ bool zt_aov_find(unsigned *aovs, const char *name) {
 }
 
 const char *zt_aov_names(void) {
-    return "Z, P, N, id.object, id.material, samples, error, all";
+    return "Z, P, N, albedo, motion, id.object, id.material, samples, error, all";
 }
 
 zt_status zt_image_add_aovs(zt_image *image, unsigned aovs) {

@@ -1,6 +1,8 @@
 /* What a camera's numbers amount to, however they are given. */
 #include "scene/scene.h"
 
+#include <string.h>
+
 /* Nothing that follows from them is larger: what is added up stays a number. */
 #define LARGEST 1e100
 
@@ -67,4 +69,43 @@ double zt_camera_focus(const zt_camera *camera) {
     double distance =
         camera->focused ? zt_camera_depth(camera, camera->focus_on) : camera->focus_distance;
     return fmax(distance, NEAREST * zt_camera_opening(camera));
+}
+
+zt_projection zt_camera_projection(const zt_camera *camera, vec3 origin, double aspect) {
+    xform axes = zt_camera_xform(camera);
+    axes.z = vec3_scale(axes.z, -1);
+    axes.shift = vec3_sub(axes.shift, origin);
+    double high = 2 * zt_camera_half_height(camera);
+    return (zt_projection){camera->lens, xform_inverse(&axes), high * aspect, high};
+}
+
+bool zt_project(double *x, double *y, const zt_projection *projection, vec3 point) {
+    const double pi = 3.14159265358979323846;
+    vec3 p = xform_point(&projection->camera, point);
+    if (projection->lens == ZT_LENS_EQUIRECTANGULAR) {
+        *x = 0.5 + atan2(p.x, p.z) / (2 * pi);
+        *y = 0.5 - atan2(p.y, hypot(p.x, p.z)) / pi;
+        return vec3_max_abs(p) > 0;
+    }
+    double depth = projection->lens == ZT_LENS_PERSPECTIVE ? p.z : 1;
+    *x = 0.5 + p.x / (depth * projection->wide);
+    *y = 0.5 - p.y / (depth * projection->high);
+    return p.z > 0 && isfinite(*x) && isfinite(*y);
+}
+
+void zt_camera_matrices(double to_camera[16], double to_picture[16], const zt_camera *camera,
+                        double aspect) {
+    zt_projection p = zt_camera_projection(camera, (vec3){0, 0, 0}, aspect);
+    const vec3 rows[4] = {p.camera.x, p.camera.y, p.camera.z, p.camera.shift};
+    bool around = p.lens == ZT_LENS_EQUIRECTANGULAR, flat = p.lens == ZT_LENS_ORTHOGRAPHIC;
+    memset(to_picture, 0, 16 * sizeof *to_picture);
+    for (int i = 0; i < 4; i++) {
+        const vec3 r = rows[i];
+        const double one = i == 3, w = flat ? one : r.z;
+        const double own[4] = {r.x, r.y, r.z, one},
+                     seen[4] = {w / 2 + r.x / p.wide, w / 2 - r.y / p.high, flat ? r.z : one,
+                                w};
+        memcpy(to_camera + 4 * i, own, sizeof own);
+        if (!around) memcpy(to_picture + 4 * i, seen, sizeof seen);
+    }
 }

@@ -204,4 +204,23 @@ double zt_camera_depth(const zt_camera *camera, vec3 point);
 /* How far ahead all is sharp; never behind, nor nearer than a millionth of the opening. */
 double zt_camera_focus(const zt_camera *camera);
 
+/* How a camera sees, for points relative to some origin. */
+typedef struct zt_projection {
+    zt_lens_kind lens;
+    xform camera;      /* to how far to the right, up and ahead a point is */
+    double wide, high; /* what the picture shows: of perspective at a distance of 1 */
+} zt_projection;
+
+/* Of a picture so many times wider than high. */
+zt_projection zt_camera_projection(const zt_camera *camera, vec3 origin, double aspect);
+
+/* Where on the picture a point is, 0..1 from the left and from the top; beyond that where it is
+ * outside. False where the camera cannot show it, as behind it. */
+bool zt_project(double *x, double *y, const zt_projection *projection, vec3 point);
+
+/* The same as matrices, as zt_image_info has them: to the camera, and to the picture, the
+ * latter all zeros of an equirectangular lens, which has none. */
+void zt_camera_matrices(double to_camera[16], double to_picture[16], const zt_camera *camera,
+                        double aspect);
+
 #endif

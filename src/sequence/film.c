@@ -81,6 +81,8 @@ static zt_status make_image(making *m, const zt_film_order *order, int64_t posit
                               .title = order->title,
                               .description = order->description,
                               .settings = m->settings.text};
+    memcpy(m->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
+    memcpy(m->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
     m->result->rendered++;
     return ZT_OK;
 }

@@ -34,7 +34,8 @@ struct zt_renderer {
     zt_render_work *work;
     zt_reuse *reuse; /* of the frame before; NULL: nothing is copied */
     bool checks_reuse;
-    zt_frame_cost cost; /* of the last frame */
+    zt_frame_cost cost; /* of the last frame; and its camera's, as zt_image_info has them */
+    double world_to_camera[16], world_to_ndc[16];
     const struct zt_manifest
         *followed;       /* whose samples frames take; NULL: none's. Not its own */
     zt_pacing *pacing;   /* of a budget; NULL: none */

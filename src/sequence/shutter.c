@@ -316,6 +316,14 @@ static void write_division(zt_division *division, const opening *o) {
             track_between(o->animation, &o->step_from->scene, &o->step_to->scene);
 }
 
+zt_status zt_shutter_middle(zt_scene *scene, const zt_animation *animation, int64_t frame,
+                            zt_arena *arena, zt_listener listener) {
+    const zt_shutter *shutter = &animation->film.shutter;
+    double cell = shutter->close > shutter->open ? ZT_TIME_CELLS / 2 : 0;
+    return zt_animation_freeze(scene, animation, time_of(animation, frame, cell), arena,
+                               listener);
+}
+
 static zt_status expose_moment(zt_exposure *exposure, const zt_animation *animation,
                                double time_s, zt_arena *arena, zt_listener listener) {
     zt_scene *scene = ZT_PUSH(arena, zt_scene, 1);

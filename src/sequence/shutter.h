@@ -34,6 +34,10 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
                             const zt_animation *animation, int64_t frame, int height,
                             zt_arena *arena, zt_listener listener);
 
+/* The scene in the middle of a frame's opening. Fails as zt_animation_freeze does. */
+zt_status zt_shutter_middle(zt_scene *scene, const zt_animation *animation, int64_t frame,
+                            zt_arena *arena, zt_listener listener);
+
 /* What the random numbers of a frame are keyed by: the places of samples in their pixels by the
  * seed and the camera, all others by the seed and all of the exposure, so that noise changes
  * from frame to frame, but frames in which nothing changes come out identical. */

@@ -464,6 +464,7 @@ static void tell_hits(zt_probe *probes, const work *w, const zt_tracer *tracer) 
         probe->distance = (double)w->rays.t[k];
         probe->point = probe->mirror_origin = at(w->from.x, w->from.y, w->from.z, k);
         probe->normal = at(p->nx, p->ny, p->nz, k);
+        probe->color = at(p->color_r, p->color_g, p->color_b, k);
         probe->mirror_source = w->from.source[k];
     }
 }
@@ -507,7 +508,7 @@ static void probe(const zt_tracer *tracer, zt_probe *probes, int count, void *me
     if (w->rays.count == 0) return;
     find_points(&w->points, &w->rays, tracer);
     tell_hits(probes, w, tracer);
-    probe_lamps(probes, w, tracer, &given);
+    if (!probes->unlit) probe_lamps(probes, w, tracer, &given);
     for (int k = 0; k < w->points.count; k++) {
         mirror_ray(w, k);
         probes[w->points.pixel[k]].mirror_direction = at(w->rays.dx, w->rays.dy, w->rays.dz, k);

@@ -68,6 +68,7 @@ typedef struct zt_probe {
      * the first): which places of lamps with a size are asked about. */
     uint32_t key, sample;
     int32_t depth;
+    bool unlit;        /* lamps are not asked for, likewise: nothing is said of them */
     vec3 *lamp_points; /* NULL, or room for one for each light of the scene */
     /* The answer. `object` is an index in the scene, or -1 where nothing is hit: then the rest
      * says nothing. */
@@ -75,6 +76,7 @@ typedef struct zt_probe {
     int32_t part;       /* of a mesh: which triangle, else -1 */
     double distance;    /* in the unit of space */
     vec3 point, normal; /* the normal is unit and faces the ray's origin */
+    vec3 color;         /* of the surface there */
     uint64_t lit;       /* bit i: nothing hides the scene's light number i (< 64, not an ambient
                            one; the surface faces it) */
     /* lamp_points[i]: where on that light was looked, where the surface faces it. */
