@@ -598,6 +598,7 @@ static void check_finds(void **state) {
 
     const zt_video_expected right = {
         .choice = &choice,
+        .like = first,
         .rate = {24, 1},
         .frame_count = FRAME_COUNT,
         .samples = {{first, 0}, {NULL, 0}, {last, FRAME_COUNT - 1}}};

@@ -37,25 +37,31 @@ static zt_status make_file(const char *path, const char *target, zt_listener lis
     struct stat found;
     if (stat(target, &found) == 0 && S_ISDIR(found.st_mode))
         return refuse(target, "it is a directory", listener);
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(path, "ab"); /* what is there stays */
     if (!file) return refuse(path, strerror(errno), listener);
-    fclose(file); /* empty: nothing that could be lost */
+    fclose(file);
     return ZT_OK;
 }
 
-static void forget(zt_aside *aside) {
+void zt_aside_forget(zt_aside *aside) {
     free(aside->path);
     free(aside->target);
     *aside = (zt_aside){0};
 }
 
-zt_status zt_aside_open(zt_aside *aside, const char *target, zt_listener listener) {
-    *aside = (zt_aside){.path = zt_text_print("%s.part", target), .target = strdup(target)};
+zt_status zt_aside_open_as(zt_aside *aside, const char *target, const char *suffix,
+                           zt_listener listener) {
+    *aside =
+        (zt_aside){.path = zt_text_print("%s%s", target, suffix), .target = strdup(target)};
     zt_status status = ZT_EMEMORY;
     if (aside->path && aside->target) status = make_directories(aside->path, listener);
     if (status == ZT_OK) status = make_file(aside->path, target, listener);
-    if (status != ZT_OK) forget(aside);
+    if (status != ZT_OK) zt_aside_forget(aside);
     return status;
+}
+
+zt_status zt_aside_open(zt_aside *aside, const char *target, zt_listener listener) {
+    return zt_aside_open_as(aside, target, ".part", listener);
 }
 
 zt_status zt_aside_keep(zt_aside *aside, zt_listener listener) {
@@ -64,7 +70,7 @@ zt_status zt_aside_keep(zt_aside *aside, zt_listener listener) {
         status = refuse(aside->target, strerror(errno), listener);
         unlink(aside->path);
     }
-    forget(aside);
+    zt_aside_forget(aside);
     return status;
 }
 
@@ -83,10 +89,10 @@ zt_status zt_aside_room(const zt_aside *aside, double bytes, zt_listener listene
 
 void zt_aside_leave(zt_aside *aside, zt_listener listener) {
     zt_tell(listener, ZT_NOTE, "what was written is kept as %s", aside->path);
-    forget(aside);
+    zt_aside_forget(aside);
 }
 
 void zt_aside_drop(zt_aside *aside) {
     if (aside->path) unlink(aside->path);
-    forget(aside);
+    zt_aside_forget(aside);
 }

@@ -12,9 +12,14 @@ typedef struct zt_aside {
     char *target; /* what it will be called */
 } zt_aside;
 
-/* Makes missing directories and an empty file at aside->path, which shows that it can be
- * written. ZT_EFILE after telling why not; then nothing is under way. */
+/* Makes missing directories and a file at aside->path, which shows that it can be written; what
+ * a file of this name holds, it still holds. ZT_EFILE after telling why not; then nothing is
+ * under way. */
 zt_status zt_aside_open(zt_aside *aside, const char *target, zt_listener listener);
+
+/* The same with another ending than ".part". */
+zt_status zt_aside_open_as(zt_aside *aside, const char *target, const char *suffix,
+                           zt_listener listener);
 
 /* Gives the file its name, and forgets about it. Where that fails, which is told, removes it.
  */
@@ -24,7 +29,8 @@ zt_status zt_aside_keep(zt_aside *aside, zt_listener listener);
  * quarter of it; where there is less, a warning. */
 zt_status zt_aside_room(const zt_aside *aside, double bytes, zt_listener listener);
 
-/* Forgets about the file, which stays under the name that it has; tells that as a note. */
+/* Forgets about the file, which stays under the name that it has; and tells that as a note. */
+void zt_aside_forget(zt_aside *aside);
 void zt_aside_leave(zt_aside *aside, zt_listener listener);
 
 /* Removes the file, if one is under way. */

@@ -1,5 +1,5 @@
-/* A movie: images are converted, encoded and, when the file is complete, held against what it
- * became; only then it gets its name. */
+/* A movie: images are converted and encoded into a file that grows; when all are there, that
+ * becomes the film, is held against what was sent, and only then gets its name. */
 #include "encode/video.h"
 
 #include <inttypes.h>
@@ -12,47 +12,64 @@
 #include "base/text.h"
 #include "encode/aside.h"
 #include "encode/video_check.h"
-#include "encode/video_palette.h"
+#include "encode/video_encoder.h"
+#include "encode/video_finished.h"
+#include "encode/video_growth.h"
+#include "encode/video_join.h"
 #include "encode/video_pixels.h"
-#include "encode/video_reader.h"
-#include "encode/video_writer.h"
+#include "encode/video_store.h"
+
+/* Converts for one thread at a time. */
+typedef struct converter {
+    struct converter *next;
+    zt_video_pixels *pixels;
+} converter;
 
 typedef struct movie {
     zt_video_ear ear;
-    zt_video_choice choice;
-    zt_output_option *options; /* a copy, which the choice points into */
+    zt_video_choice choice, grown; /* of the film, and of the pieces that it grows in */
+    zt_output_option *options;     /* a copy, which the choice points into */
     zt_output_format format;
-    zt_video_pixels *pixels;
-    mtx_t converting;
-    zt_aside aside;
-    zt_video_writer writer; /* of the film; of a GIF only when its palette is known */
-    int64_t frame_count;
-    zt_video_sample samples[ZT_VIDEO_SAMPLE_COUNT];
-    /* Where the palette is made from the film: that, and the pictures until then. */
-    const zt_video_palette_door *door;
-    void *palette;
-    zt_aside store_aside;
-    zt_video_ear store_ear;
-    zt_video_choice store_choice;
-    zt_video_writer store;
+    mtx_t mutex;
+    converter *converters;         /* those that nobody uses just now */
+    AVFrame *like;                 /* a frame of the kind that will come, with its tags */
+    AVCodecParameters *parameters; /* of the film's packets */
+    zt_aside aside;                /* of the film while it is joined */
+    zt_video_growth growth;
 } movie;
 
-static void movie_free(movie *m) {
-    zt_video_writer_close(&m->writer);
-    zt_video_writer_close(&m->store);
-    zt_video_pixels_close(&m->pixels);
-    mtx_destroy(&m->converting);
-    if (m->door) m->door->close(m->palette);
-    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) av_frame_free(&m->samples[i].frame);
-    zt_aside_drop(&m->aside);
-    zt_aside_drop(&m->store_aside);
+/* A frame that is ready to be encoded. */
+typedef struct picture {
+    AVFrame *frame;
+    double render_s;
+} picture;
+
+static void free_options(movie *m) {
     for (zt_output_option *o = m->options; o && o->name; o++) {
         free((char *)o->name);
         free((char *)o->value);
     }
     free(m->options);
+}
+
+static void free_converters(movie *m) {
+    for (converter *c; (c = m->converters);) {
+        m->converters = c->next;
+        zt_video_pixels_close(&c->pixels);
+        free(c);
+    }
+}
+
+/* What later runs can use stays. */
+static void movie_free(movie *m, bool keeps_pieces, bool keeps_frames) {
+    zt_video_growth_close(&m->growth, keeps_pieces, keeps_frames);
+    zt_aside_drop(&m->aside);
+    free_converters(m);
+    mtx_destroy(&m->mutex);
+    av_frame_free(&m->like);
+    avcodec_parameters_free(&m->parameters);
+    free_options(m);
     free((char *)m->ear.target);
-    free((char *)m->store_ear.target);
     free(m);
 }
 
@@ -70,43 +87,103 @@ static zt_status copy_options(movie *m, const zt_output_option *options) {
     return ZT_OK;
 }
 
-/* A frame of the kind that will come, for its tags. */
-static zt_status make_first(movie *m, AVFrame **first) {
+/* How frames wait for those films that are made of all at once. */
+static zt_status choose_grown(movie *m) {
+    m->grown = m->choice;
+    if (!m->choice.stored) return ZT_OK;
+    const zt_video_ear ear = {"pieces.mkv", m->ear.listener};
+    zt_output_option options[] = {
+        {"codec", "ffv1"}, {"pixel-format", m->choice.stored}, {NULL, NULL}};
+    ZT_TRY(zt_video_choose(&m->grown, &m->format, options, &ear));
+    m->grown.options = NULL;
+    m->grown.stored = m->choice.stored;
+    return ZT_OK;
+}
+
+static converter *take_converter(movie *m) {
+    mtx_lock(&m->mutex);
+    converter *c = m->converters;
+    if (c) m->converters = c->next;
+    mtx_unlock(&m->mutex);
+    return c;
+}
+
+static void give_back(movie *m, converter *c) {
+    mtx_lock(&m->mutex);
+    c->next = m->converters;
+    m->converters = c;
+    mtx_unlock(&m->mutex);
+}
+
+static zt_status add_converter(movie *m) {
+    converter *c = calloc(1, sizeof *c);
+    if (!c) return ZT_EMEMORY;
+    zt_status status = zt_video_pixels_open(&c->pixels, &m->format, m->grown.pixels, &m->ear);
+    if (status == ZT_OK)
+        give_back(m, c);
+    else
+        free(c);
+    return status;
+}
+
+static zt_status convert(AVFrame **frame, movie *m, const zt_image *image) {
+    converter *c;
+    while (!(c = take_converter(m))) ZT_TRY(add_converter(m));
+    zt_status status = zt_video_pixels_convert(frame, c->pixels, image, &m->ear);
+    give_back(m, c);
+    return status;
+}
+
+static zt_status make_like(movie *m) {
     zt_image *image = NULL;
+    ZT_TRY(add_converter(m));
     ZT_TRY(zt_image_create(&image, m->format.width, m->format.height));
-    zt_status status = zt_video_pixels_convert(first, m->pixels, image, &m->ear);
+    zt_status status = convert(&m->like, m, image);
     zt_image_free(&image);
     return status;
 }
 
-/* Pictures wait in FFV1, which loses nothing, until the palette is known. */
-static zt_status open_store(movie *m, const AVFrame *first) {
-    static const zt_output_option options[][3] = {
-        {{"codec", "ffv1"}, {"pixel-format", "bgr0"}, {NULL, NULL}},
-        {{"codec", "ffv1"}, {"pixel-format", "bgra"}, {NULL, NULL}}};
-    m->store_ear = m->ear;
-    m->store_ear.target = zt_text_print("%s.frames.mkv", m->ear.target);
-    if (!m->store_ear.target) return ZT_EMEMORY;
-    m->door = zt_module_door("video_palette", "a GIF", m->ear.listener);
-    if (!m->door) return ZT_EUNSUPPORTED;
-    AV_TRY(&m->ear, m->door->open(&m->palette, first));
-    ZT_TRY(zt_video_choose(&m->store_choice, &m->format,
-                           options[first->format == AV_PIX_FMT_BGRA], &m->store_ear));
-    ZT_TRY(zt_aside_open(&m->store_aside, m->store_ear.target, m->ear.listener));
-    return zt_video_writer_open(&m->store, m->store_aside.path, &m->store_choice, &m->format,
-                                first, &m->store_ear);
-}
-
-/* What will hold all frames, at a guess. */
+/* What will hold all frames, at a guess: the file that grows, and the film made of it. */
 static zt_status check_room(const movie *m) {
-    double pixels = (double)m->format.width * m->format.height *
-                    (double)(m->format.frame_count > 0 ? m->format.frame_count : 1);
+    double count = (double)(m->format.frame_count > 0 ? m->format.frame_count : 1);
+    double pixels = (double)m->format.width * m->format.height * count;
     double bits = m->choice.codec->bits_a_pixel * pixels;
     if (m->choice.bitrate)
-        bits = (double)m->choice.bitrate * (double)m->format.frame_count * m->format.rate.den /
-               m->format.rate.num;
-    if (m->choice.codec->palette) bits += 8 * pixels;
+        bits = (double)m->choice.bitrate * count * m->format.rate.den / m->format.rate.num;
+    bits += m->choice.stored ? m->grown.codec->bits_a_pixel * pixels : bits;
     return zt_aside_room(&m->aside, bits / 8, m->ear.listener);
+}
+
+/* An encoder of the film's, which shows that there is one. */
+static zt_status open_encoder(AVCodecContext **encoder, movie *m) {
+    const AVOutputFormat *muxer = av_guess_format(m->choice.container->muxer, NULL, NULL);
+    AVRational rate = {m->format.rate.num, m->format.rate.den};
+    m->parameters = avcodec_parameters_alloc();
+    if (!m->parameters) return ZT_EMEMORY;
+    ZT_TRY(zt_video_encoder_open(encoder, &m->choice, muxer, m->like, rate, &m->ear));
+    AV_TRY(&m->ear, avcodec_parameters_from_context(m->parameters, *encoder));
+    return ZT_OK;
+}
+
+/* Shows that the film can be made, with its sound, before a frame is. */
+static zt_status try_join(movie *m) {
+    zt_video_join join;
+    zt_status status = zt_video_join_open(&join, m->aside.path, &m->choice, &m->format,
+                                          m->parameters, &m->ear);
+    zt_video_join_close(&join);
+    zt_aside_drop(&m->aside);
+    return status;
+}
+
+/* Pieces are encoded as the film is, where it has them. */
+static zt_status open_growth(movie *m) {
+    AVCodecContext *encoder = NULL;
+    zt_status status = open_encoder(&encoder, m);
+    if (status == ZT_OK) status = try_join(m);
+    if (status != ZT_OK || m->choice.stored) zt_video_encoder_close(&encoder, m->choice.stored ? NULL : m->like);
+    ZT_TRY(status);
+    return zt_video_growth_open(&m->growth, m->ear.target, &m->grown, &m->format, m->like,
+                                encoder, zt_video_said(&m->choice, m->ear.target), &m->ear);
 }
 
 static zt_status open_all(movie *m, const char *target, const zt_output_option *options) {
@@ -114,23 +191,15 @@ static zt_status open_all(movie *m, const char *target, const zt_output_option *
     if (!m->ear.target) return ZT_EMEMORY;
     ZT_TRY(copy_options(m, options));
     ZT_TRY(zt_video_choose(&m->choice, &m->format, m->options, &m->ear));
+    ZT_TRY(choose_grown(m));
     const zt_container *kind = m->choice.container;
     if (zt_wish_value(options, "audio") && !kind->sound)
         zt_tell(m->ear.listener, ZT_WARNING, "%s has no sound: %s files hold none", target,
                 kind->ending);
-    ZT_TRY(zt_aside_open(&m->aside, target, m->ear.listener));
+    ZT_TRY(zt_aside_open_as(&m->aside, target, ".joined", m->ear.listener));
     ZT_TRY(check_room(m));
-    /* What a palette is made from is R'G'B'. */
-    enum AVPixelFormat pixels =
-        m->choice.pixels == AV_PIX_FMT_PAL8 ? AV_PIX_FMT_BGR0 : m->choice.pixels;
-    ZT_TRY(zt_video_pixels_open(&m->pixels, &m->format, pixels, &m->ear));
-    AVFrame *first = NULL;
-    ZT_TRY(make_first(m, &first));
-    zt_status status =
-        zt_video_writer_open(&m->writer, m->aside.path, &m->choice, &m->format, first, &m->ear);
-    if (status == ZT_OK && m->choice.codec->palette) status = open_store(m, first);
-    av_frame_free(&first);
-    return status;
+    ZT_TRY(make_like(m));
+    return open_growth(m);
 }
 
 static zt_status open_movie(void **state, const char *target, const zt_output_format *format,
@@ -138,133 +207,149 @@ static zt_status open_movie(void **state, const char *target, const zt_output_fo
     zt_libav_listen();
     movie *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
-    if (mtx_init(&m->converting, mtx_plain) != thrd_success) {
+    if (mtx_init(&m->mutex, mtx_plain) != thrd_success) {
         free(m);
         return ZT_EMEMORY;
     }
     m->format = *format;
     m->ear.listener = listener;
+    m->growth.part.file = m->growth.spool.file = -1;
     zt_status status = open_all(m, target, options);
     if (status == ZT_OK)
         *state = m;
     else
-        movie_free(m);
+        movie_free(m, format->plan, format->plan);
     return status;
-}
-
-/* Keeps the first frame, the newest one, and, so that it need not be known how many come, the
- * newest whose number is a power of two. */
-static zt_status keep_sample(movie *m, const AVFrame *frame, int64_t number) {
-    const bool wanted[ZT_VIDEO_SAMPLE_COUNT] = {
-        number == 0, number > 0 && (number & (number - 1)) == 0, number > 0};
-    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) {
-        if (!wanted[i]) continue;
-        av_frame_free(&m->samples[i].frame);
-        m->samples[i].number = number;
-        m->samples[i].frame = av_frame_clone(frame);
-        if (!m->samples[i].frame) return ZT_EMEMORY;
-    }
-    return ZT_OK;
-}
-
-static zt_status put(movie *m, AVFrame *frame) {
-    ZT_TRY(keep_sample(m, frame, m->frame_count++));
-    if (!m->palette) return zt_video_writer_put(&m->writer, frame, &m->ear);
-    AV_TRY(&m->ear, m->door->count(m->palette, frame));
-    return zt_video_writer_put(&m->store, frame, &m->store_ear);
 }
 
 static bool movie_wants(void *state, int64_t position) {
-    (void)state, (void)position;
-    return true;
-}
-
-static zt_status make_frame(void **made, void *state, const zt_image *image, int64_t number) {
-    (void)number; /* a movie has no gaps and begins at 0, whatever the numbers */
-    movie *m = state;
-    AVFrame *frame = NULL;
-    zt_libav_listen();
-    mtx_lock(&m->converting);
-    zt_status status = zt_video_pixels_convert(&frame, m->pixels, image, &m->ear);
-    mtx_unlock(&m->converting);
-    *made = frame;
-    return status;
+    const movie *m = state;
+    return !m->growth.kept[position];
 }
 
 static void drop_frame(void *state, void *made) {
     (void)state;
-    AVFrame *frame = made;
-    av_frame_free(&frame);
+    picture *ready = made;
+    av_frame_free(&ready->frame);
+    free(ready);
+}
+
+static zt_status make_frame(void **made, void *state, const zt_image *image, int64_t number) {
+    (void)number; /* a movie has no gaps and begins at 0, whatever the numbers */
+    zt_libav_listen();
+    picture *ready = calloc(1, sizeof *ready);
+    if (!ready) return ZT_EMEMORY;
+    if (image->info.known) ready->render_s = image->info.render_s;
+    zt_status status = convert(&ready->frame, state, image);
+    if (status == ZT_OK)
+        *made = ready;
+    else
+        drop_frame(state, ready);
+    return status;
 }
 
 static zt_status write_frame(void *state, void *made, int64_t number) {
     (void)number;
+    movie *m = state;
+    const picture *ready = made;
     zt_libav_listen();
-    zt_status status = put(state, made);
+    zt_status status = zt_video_growth_put(&m->growth, ready->frame, ready->render_s);
     drop_frame(state, made);
     return status;
 }
 
-static zt_status use_palette(movie *m, zt_video_reader *stored) {
-    for (;;) {
-        int error = zt_video_reader_next(stored);
-        if (error == AVERROR_EOF) return ZT_OK;
-        AV_TRY(&m->store_ear, error);
-        AVFrame *frame = NULL;
-        AV_TRY(&m->ear, m->door->use(&frame, m->palette, stored->frame));
-        zt_status status = zt_video_writer_put(&m->writer, frame, &m->ear);
-        av_frame_free(&frame);
-        ZT_TRY(status);
-    }
-}
-
-/* All pictures are there: now they get their colours. */
-static zt_status encode_stored(movie *m) {
-    ZT_TRY(zt_video_writer_finish(&m->store, &m->store_ear));
-    AV_TRY(&m->ear, m->door->choose(m->palette));
-    zt_video_reader stored;
-    int error = zt_video_reader_open(&stored, m->store_aside.path, NULL);
+static zt_status join(movie *m, zt_hash *checksum) {
+    const zt_video_growth *g = &m->growth;
+    const zt_video_piece **pieces = NULL;
+    int64_t count, frame_count = g->next;
+    ZT_TRY(zt_video_growth_pieces(&pieces, &count, g));
     zt_status status =
-        error < 0 ? zt_libav_refuse(&m->store_ear, error) : use_palette(m, &stored);
-    zt_video_reader_close(&stored);
+        m->choice.stored
+            ? zt_video_store_join(&frame_count, m->aside.path, &m->choice, &m->format, &g->part,
+                                  pieces, count, m->like, &m->ear)
+            : zt_video_join_pieces(checksum, m->aside.path, &m->choice, &m->format,
+                                   m->parameters, &g->part, pieces, count, &m->ear);
+    free(pieces);
     return status;
 }
 
 static void tell_checked(const movie *m, double psnr) {
     char rate[32], quality[48] = "the same to the bit";
     const zt_rate *r = &m->format.rate;
+    int64_t count = m->growth.next;
     snprintf(rate, sizeof rate, r->den == 1 ? "%d" : "%d/%d", r->num, r->den);
     if (isfinite(psnr)) snprintf(quality, sizeof quality, "PSNR %.1f dB at least", psnr);
+    if (!m->growth.samples[0].frame)
+        snprintf(quality, sizeof quality, "all as it was encoded before");
     zt_tell(m->ear.listener, ZT_NOTE, "%s: %" PRId64 " frame%s, %s, %s fps, checked: %s",
-            m->ear.target, m->frame_count, m->frame_count == 1 ? "" : "s",
-            m->choice.codec->title, rate, quality);
+            m->ear.target, count, count == 1 ? "" : "s", m->choice.codec->title, rate, quality);
 }
 
 /* A film that fails the check does not get its name, but hours of work are not thrown away. */
-static zt_status check_film(movie *m) {
+static zt_status check_film(movie *m, zt_hash checksum) {
     zt_video_expected expected = {.choice = &m->choice,
+                                  .like = m->like,
                                   .rate = m->format.rate,
-                                  .frame_count = m->frame_count,
-                                  .has_sound = m->writer.sound != NULL};
-    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) expected.samples[i] = m->samples[i];
+                                  .frame_count = m->growth.next,
+                                  .has_sound = m->choice.container->sound &&
+                                               zt_wish_value(m->options, "audio"),
+                                  .checksum = checksum};
+    for (int i = 0; i < ZT_VIDEO_SAMPLE_COUNT; i++) expected.samples[i] = m->growth.samples[i];
     double psnr;
     zt_status status = zt_video_check(&psnr, m->aside.path, &expected, &m->ear);
     if (status == ZT_OK) tell_checked(m, psnr);
-    if (status == ZT_EFILE) zt_aside_leave(&m->aside, m->ear.listener);
+    if (status == ZT_EFILE) zt_aside_leave(&m->growth.aside, m->ear.listener);
     return status;
 }
 
+static bool is_whole(const movie *m) {
+    return !m->format.plan || m->growth.next == m->format.plan->count;
+}
+
+static zt_status tell_finished(movie *m) {
+    const zt_output_plan *plan = m->format.plan;
+    zt_hash key = m->growth.film_key;
+    if (!plan || !plan->completed || !is_whole(m) || (!key.high && !key.low)) return ZT_OK;
+    zt_output_record record;
+    ZT_TRY(zt_video_finished_record(&record, m->ear.target, key, plan, &m->ear));
+    return plan->completed(plan->user, &record);
+}
+
 static zt_status complete(movie *m) {
-    if (m->palette) ZT_TRY(encode_stored(m));
-    ZT_TRY(zt_video_writer_finish(&m->writer, &m->ear));
-    ZT_TRY(check_film(m));
-    return zt_aside_keep(&m->aside, m->ear.listener);
+    zt_hash checksum = {0};
+    ZT_TRY(zt_aside_open_as(&m->aside, m->ear.target, ".joined", m->ear.listener));
+    ZT_TRY(join(m, &checksum));
+    ZT_TRY(check_film(m, checksum));
+    ZT_TRY(zt_aside_keep(&m->aside, m->ear.listener));
+    return tell_finished(m);
+}
+
+/* Of a film that was edited, the older one is better than what its new beginning is. */
+static zt_status complete_what_came(movie *m) {
+    zt_video_growth *g = &m->growth;
+    if (g->untouched) {
+        zt_tell(m->ear.listener, ZT_NOTE, "%s: nothing has changed", m->ear.target);
+        return ZT_OK;
+    }
+    ZT_TRY(zt_video_growth_end(g));
+    if (zt_video_growth_has_more(g)) {
+        zt_tell(m->ear.listener, ZT_NOTE, "%s is not made yet: its pieces wait in %s",
+                m->ear.target, g->aside.path);
+        return ZT_OK;
+    }
+    return g->next > 0 ? complete(m) : ZT_OK;
 }
 
 static zt_status close_movie(void *state, bool keep) {
     zt_libav_listen();
-    zt_status status = keep ? complete(state) : ZT_OK;
-    movie_free(state);
+    movie *m = state;
+    zt_video_growth *g = &m->growth;
+    zt_status status = keep ? complete_what_came(m) : ZT_OK;
+    bool planned = m->format.plan, done = keep && status == ZT_OK;
+    bool interrupted = planned && !g->untouched && !is_whole(m);
+    /* A film that was interrupted has the pieces itself, if it has pieces. */
+    bool needs_pieces = m->choice.stored || zt_video_growth_has_more(g) || g->next == 0;
+    movie_free(m, done ? interrupted && needs_pieces : planned, done ? interrupted : planned);
     return status;
 }
 

@@ -8,6 +8,7 @@
 
 #include <libavutil/pixdesc.h>
 
+#include "encode/video_piece.h"
 #include "encode/video_pixels.h"
 #include "encode/video_reader.h"
 
@@ -16,6 +17,7 @@ typedef struct check {
     const zt_video_expected *expected;
     const zt_video_ear *ear;
     zt_video_reader reader;
+    zt_hash checksum; /* of the packets so far */
 } check;
 
 /* Tells what is wrong and fails. */
@@ -72,7 +74,7 @@ static int64_t number_of(const check *c, int64_t pts) {
 }
 
 /* Marks the frame of a packet in `seen`, or notes its sound. */
-static zt_status note_packet(const check *c, uint8_t *seen, int64_t *count, bool *has_sound) {
+static zt_status note_packet(check *c, uint8_t *seen, int64_t *count, bool *has_sound) {
     const AVPacket *packet = c->reader.packet;
     if (packet->stream_index != c->reader.stream->index) {
         AVRational base = c->reader.container->streams[packet->stream_index]->time_base;
@@ -89,6 +91,7 @@ static zt_status note_packet(const check *c, uint8_t *seen, int64_t *count, bool
     if (seen[number]) return FAIL(c, "frame %" PRId64 " twice", number);
     seen[number] = 1;
     ++*count;
+    c->checksum = zt_packet_checksum(c->checksum, c->reader.packet, number);
     return ZT_OK;
 }
 
@@ -112,6 +115,10 @@ static zt_status check_times(check *c) {
         return FAIL(c, "%" PRId64 " frames instead of %" PRId64, count,
                     c->expected->frame_count);
     if (c->expected->has_sound && !has_sound) return FAIL(c, "no sound");
+    zt_hash sent = c->expected->checksum;
+    if ((sent.high || sent.low) &&
+        (sent.high != c->checksum.high || sent.low != c->checksum.low))
+        return FAIL(c, "other packets than were encoded");
     return ZT_OK;
 }
 
@@ -133,7 +140,7 @@ static bool tag_differs(int found, int wanted, int unspecified) {
 
 static zt_status check_tags(const check *c, int primaries, int transfer, int matrix, int range,
                             const char *where) {
-    const AVFrame *sent = c->expected->samples[0].frame;
+    const AVFrame *sent = c->expected->like;
     if (tag_differs(primaries, sent->color_primaries, AVCOL_PRI_UNSPECIFIED) ||
         tag_differs(transfer, sent->color_trc, AVCOL_TRC_UNSPECIFIED) ||
         tag_differs(matrix, sent->colorspace, AVCOL_SPC_UNSPECIFIED) ||
@@ -148,7 +155,7 @@ static zt_status check_stream(const check *c) {
     const AVStream *stream = c->reader.stream;
     const AVCodecParameters *p = stream->codecpar;
     const zt_video_choice *choice = c->expected->choice;
-    const AVFrame *sent = c->expected->samples[0].frame;
+    const AVFrame *sent = c->expected->like;
     if (p->codec_id != choice->encoder->id)
         return FAIL(c, "%s instead of %s", avcodec_get_name(p->codec_id), choice->codec->title);
     if (choice->container->has_boxes && choice->codec->tag &&

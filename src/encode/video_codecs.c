@@ -167,6 +167,7 @@ static const zt_codec codecs[] = {
      .encoder = "gif",
      .endings = {".gif"},
      .pixels = {"pal8", "bgra"},
+     .stored = {"bgr0", "bgra"},
      .thread_count = 1,
      .palette = true,
      .bits_a_pixel = 1.5},
@@ -175,6 +176,7 @@ static const zt_codec codecs[] = {
      .encoder = "apng",
      .endings = {".apng"},
      .pixels = {"rgb24", "rgba", "rgb48be", "rgba64be"},
+     .stored = {"bgr0", "bgra", "gbrp16le", "gbrap16le"},
      .settings = {{"pred", "mixed", NULL}, {"compression_level", "6", NULL}},
      .thread_count = 1,
      .lossless = true,
@@ -249,8 +251,10 @@ static zt_status choose_pixels(zt_video_choice *choice, const zt_video_ear *ear)
     choice->pixels = av_get_pix_fmt(name);
     names known = {.nearest = zt_nearest_to(name)};
     for (const char *const *p = codec->pixels; *p; p++) {
-        if (choice->pixels != AV_PIX_FMT_NONE && av_get_pix_fmt(*p) == choice->pixels)
+        if (choice->pixels != AV_PIX_FMT_NONE && av_get_pix_fmt(*p) == choice->pixels) {
+            choice->stored = codec->stored[p - codec->pixels];
             return ZT_OK;
+        }
         add_name(&known, *p);
     }
     return refuse_name(ear, "pixel format", name, codec->name, &known);

@@ -39,6 +39,8 @@ typedef struct zt_codec {
     const char *decoder;      /* of alpha, where libavcodec's own leaves it out; else NULL */
     const char *endings[4];
     const char *pixels[ZT_CODEC_LIST_MAX]; /* the first one where none is asked for */
+    const char *stored[ZT_CODEC_LIST_MAX]; /* how frames of each wait in FFV1, where the kind
+                                              of file has no pieces */
     int width_min, height_min;
     const char *crf; /* where none is asked for; NULL: there is no such scale */
     int crf_max;
@@ -59,6 +61,7 @@ typedef struct zt_video_choice {
     const zt_codec *codec;
     const AVCodec *encoder;
     enum AVPixelFormat pixels;
+    const char *stored;       /* of the codec's; NULL: it has pieces */
     const char *crf, *preset; /* NULL: does not apply */
     int64_t bitrate;          /* bits a second; 0: by crf, or by itself */
     const zt_output_option *options;
