@@ -89,7 +89,7 @@ static inline bool zt_meet_cluster(real *t, int32_t *triangle, const zt_cluster 
         second = axis == 0 ? 2 : axis - 1;
     real a = rays->o[0][i], b = rays->o[1][i], c = rays->o[2][i];
     real lean_a = rays->lean[0][i], lean_b = rays->lean[1][i];
-    int32_t inside[ZT_CLUSTER], any = 0;
+    uint32_t inside = 0; /* bit k: triangle k */
     const float *x0 = cluster->corners[0][first], *x1 = cluster->corners[1][first],
                 *x2 = cluster->corners[2][first];
     const float *y0 = cluster->corners[0][second], *y1 = cluster->corners[1][second],
@@ -98,16 +98,15 @@ static inline bool zt_meet_cluster(real *t, int32_t *triangle, const zt_cluster 
                 *z2 = cluster->corners[2][axis];
     for (int k = 0; k < ZT_CLUSTER; k++) {
         real d0 = (real)z0[k] - c, d1 = (real)z1[k] - c, d2 = (real)z2[k] - c;
-        inside[k] =
+        bool in =
             about_one_side(((real)x0[k] - a) - lean_a * d0, ((real)y0[k] - b) - lean_b * d0,
                            ((real)x1[k] - a) - lean_a * d1, ((real)y1[k] - b) - lean_b * d1,
                            ((real)x2[k] - a) - lean_a * d2, ((real)y2[k] - b) - lean_b * d2);
-        any |= inside[k];
+        inside |= -(uint32_t)in & 1u << k;
     }
-    if (!any) return false;
     bool found = false;
-    for (int k = 0; k < ZT_CLUSTER; k++)
-        if (inside[k]) found |= settle(t, triangle, cluster, k, rays, i);
+    for (; inside; inside &= inside - 1)
+        found |= settle(t, triangle, cluster, __builtin_ctz(inside), rays, i);
     return found;
 }
 
@@ -145,8 +144,9 @@ static inline uint32_t zt_meet_cluster_lanes(real *t, int32_t *triangle,
             inside[l] |= -in & bit;
         }
     }
-    uint32_t found = 0;
-    for (; lanes; lanes &= lanes - 1) {
+    uint32_t some = 0, found = 0;
+    for (int l = 0; l < ZT_BVH_LANES; l++) some |= -(uint32_t)(inside[l] != 0) & 1u << l;
+    for (lanes &= some; lanes; lanes &= lanes - 1) {
         int l = __builtin_ctz(lanes), i = begin + l;
         for (int32_t left = inside[l]; left; left &= left - 1)
             if (settle(&t[i], &triangle[i], cluster, __builtin_ctz((unsigned)left), rays, i))
