@@ -1,6 +1,5 @@
 /* Budgets of time: what frames are allotted, on machines that are made up here and that are as
- * fast as was thought, or not; the manifest that remembers it, whatever a file may hold
- * instead; and films rendered again from one. */
+ * fast as was thought, or not; and films rendered again by the manifest that remembers it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +10,6 @@
 #include "program.h"
 #include "scenes.h"
 #include "sequence/budget.h"
-#include "sequence/manifest.h"
 
 /* ---- machines that are made up --------------------------------------------------------------
  */
@@ -22,7 +20,7 @@ typedef struct machine {
     double jitter; /* of each frame's time */
 } machine;
 
-enum { FRAMES_MAX = 1000 };
+enum { FRAMES_MAX = 1000, FIRST = 7 };
 
 /* What each frame took, and all of them. */
 typedef struct outcome {
@@ -34,7 +32,7 @@ static bool adaptive(const zt_plan *p) { return p->sampling.min != p->sampling.m
 
 /* What the film is in truth: frames in the middle cost more, and are noisier. */
 static double bell(const zt_plan *p, int64_t frame) {
-    double x = 2.0 * (double)(frame - p->first) / (double)(p->last - p->first) - 1;
+    double x = 2.0 * (double)(frame - FIRST) / (double)(p->frame_count - 1) - 1;
     return 1 - x * x;
 }
 static double true_cost(const zt_plan *p, int64_t frame, double work) {
@@ -44,8 +42,10 @@ static double noise(const zt_plan *p, int64_t frame) { return 0.1 + 0.2 * bell(p
 
 /* Errors fall by samples^-0.5 here; adaptive ones ask for error^-1.7 work. */
 static machine new_machine(int frame_count, zt_budget budget, zt_sampling sampling) {
-    machine m = {.plan = {.first = 7,
-                          .last = 7 + frame_count - 1,
+    static int64_t frames[FRAMES_MAX];
+    for (int i = 0; i < FRAMES_MAX; i++) frames[i] = FIRST + i;
+    machine m = {.plan = {.frames = frames,
+                          .frame_count = frame_count,
                           .budget = budget,
                           .sampling = sampling,
                           .power = 1.7,
@@ -65,8 +65,8 @@ static outcome run_machine(machine *m, double passed_s) {
     outcome o = {.all_s = passed_s};
     uint64_t random = 5;
     zt_plan_begin(&m->plan, passed_s);
-    for (int64_t f = m->plan.first; f <= m->plan.last; f++) {
-        int i = (int)(f - m->plan.first);
+    for (int i = 0; i < m->plan.frame_count; i++) {
+        int64_t f = m->plan.frames[i];
         zt_sampling s = o.sampling[i] = zt_plan_sampling(&m->plan, f);
         double work = adaptive(&m->plan) ? pow(s.error, -1.7) : s.max;
         o.frame_s[i] = m->slow * (1 + m->jitter * test_between(&random, -1, 1)) *
@@ -172,8 +172,8 @@ static void noisy_frames_end(void **state) {
     zt_plan_begin(&m.plan, 0);
     assert_int_equal(zt_plan_sampling(&m.plan, 9).mean_max, 0); /* nothing is known */
     m.plan.sample_s = 0.05;
-    for (int64_t frame = m.plan.first; frame <= m.plan.last; frame++) {
-        int bound = zt_plan_sampling(&m.plan, frame).mean_max;
+    for (int i = 0; i < m.plan.frame_count; i++) {
+        int bound = zt_plan_sampling(&m.plan, m.plan.frames[i]).mean_max;
         assert_in_range(bound, 57, 61);
     }
 }
@@ -194,186 +194,19 @@ static void ends_of_the_range(void **state) {
     o = run_machine(&m, 0);
     for (int i = 0; i < 50; i++) assert_int_equal(o.sampling[i].max, 64);
     m = new_machine(2, (zt_budget){.film_s = 2}, even);
-    m.plan.last = m.plan.first;
+    m.plan.frame_count = 1;
     m.plan.cost_count = 1;
     zt_plan_begin(&m.plan, 0.2);
     int samples = zt_plan_sampling(&m.plan, 7).max;
     assert_within(0.2 + true_cost(&m.plan, 7, samples), 2, 0.02);
     for (int a = 0; a < 2; a++) { /* by an error; what the pilot took is the film's */
         m = new_machine(2, a ? (zt_budget){.film_s = 2} : (zt_budget){.frame_s = 2}, by_error);
-        m.plan.last = m.plan.first;
+        m.plan.frame_count = 1;
         m.plan.cost_count = 1;
         zt_plan_begin(&m.plan, 0.6);
         double work = pow(zt_plan_sampling(&m.plan, 7).error, -1.7);
         assert_within(true_cost(&m.plan, 7, work), a ? 1.4 : 2, 0.02);
     }
-}
-
-/* ---- manifests ------------------------------------------------------------------------------
- */
-
-/* What is written is read again, to the last bit, in order. */
-static void manifests_come_back(void **state) {
-    (void)state;
-    enum { COUNT = 300 };
-    uint64_t random = 3;
-    zt_manifest *m = zt_manifest_create(1280, 720, ZT_PRECISION_DOUBLE), *again;
-    zt_manifest_frame frames[COUNT];
-    for (int i = 0; i < COUNT; i++) {
-        int samples = (int)test_between(&random, 1, 65537);
-        frames[i] = (zt_manifest_frame){3 * i + 10, samples, samples, 0, 0};
-        if (i % 3 == 0)
-            frames[i] = (zt_manifest_frame){3 * i + 10, 1, samples + 1, test_random(&random),
-                                            i % 2 ? samples : 0};
-        if (samples == 65536) frames[i].min = frames[i].max = 65536;
-    }
-    for (int i = 0; i < COUNT; i++) { /* in no order; once more with what counts */
-        int at = i * 7 % COUNT;
-        zt_manifest_frame other = {frames[at].frame, 1, 1, 0, 0};
-        assert_int_equal(zt_manifest_add(m, &other), ZT_OK);
-        assert_int_equal(zt_manifest_add(m, &frames[at]), ZT_OK);
-    }
-    assert_int_equal(
-        zt_manifest_write(m, "x.manifest", "a \"b\"\\\n\x01.yaml", (zt_listener){0}), ZT_OK);
-    zt_manifest_free(&m);
-    assert_null(m);
-    assert_int_equal(zt_manifest_read(&again, "x.manifest", (zt_listener){0}), ZT_OK);
-    for (int i = 0; i < COUNT; i++) {
-        const zt_manifest_frame *f = zt_manifest_find(again, frames[i].frame);
-        assert_non_null(f);
-        assert_true(f->min == frames[i].min && f->max == frames[i].max);
-        assert_true(f->error == frames[i].error && f->mean_max == frames[i].mean_max);
-        assert_null(zt_manifest_find(again, frames[i].frame + 1));
-    }
-    int64_t first, last;
-    zt_manifest_range(&first, &last, again);
-    assert_int_equal(first, 10);
-    assert_int_equal(last, 3 * (COUNT - 1) + 10);
-    zt_render_settings open = {0},
-                       set = {.width = 8, .height = 4, .precision = ZT_PRECISION_SINGLE};
-    zt_manifest_settings(&open, again);
-    zt_manifest_settings(&set, again);
-    assert_true(open.width == 1280 && open.height == 720 &&
-                open.precision == ZT_PRECISION_DOUBLE);
-    assert_true(set.width == 8 && set.height == 4 && set.precision == ZT_PRECISION_SINGLE);
-    zt_manifest_free(&again);
-}
-
-static const char good[] =
-    "{\"zoetrope\": 1, \"description\": \"f\",\n"
-    "\"size\": [4, 2], \"precision\": \"auto\", \"frames\": [\n"
-    "{\"frame\": 1, \"samples\": 2},\n"
-    "{\"frame\": 2, \"min\": 1, \"max\": 9, \"error\": 1e-3, \"mean_max\": 5}]}\n";
-
-typedef struct place_heard {
-    int count, line, column;
-    char text[256];
-} place_heard;
-
-static void hear_place(void *user, const zt_message *message) {
-    place_heard *h = user;
-    h->count++;
-    h->line = message->line;
-    h->column = message->column;
-    snprintf(h->text, sizeof h->text, "%s", message->text);
-}
-
-static zt_status read_bytes(place_heard *h, const char *bytes, size_t size) {
-    FILE *file = fopen("x.manifest", "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    fclose(file);
-    zt_manifest *m;
-    *h = (place_heard){0};
-    zt_status status = zt_manifest_read(&m, "x.manifest", (zt_listener){hear_place, h});
-    assert_true((status == ZT_OK) == (m != NULL));
-    assert_int_equal(h->count, status == ZT_OK ? 0 : 1);
-    zt_manifest_free(&m);
-    return status;
-}
-
-/* What is no manifest is refused with one sentence at its place. */
-static void hostile_manifests_are_refused(void **state) {
-    (void)state;
-    const struct {
-        const char *from, *to; /* what is changed in the good one */
-        int line, column;
-        const char *told;
-    } cases[] = {
-        {"{\"zoe", "[\"zoe", 1, 1, "here must be a {"},
-        {"\"zoetrope\": 1", "\"zoetrope\": 2", 1, 14, "whole number from 1 to 1"},
-        {"\"zoetrope\": 1, ", "", 0, 0, "\"zoetrope\" is missing"},
-        {"zoetrope", "zoetrop", 1, 2, "did you mean \"zoetrope\"?"},
-        {"\"description\"", "\"zoetrope\"", 1, 17, "\"zoetrope\" is there twice"},
-        {"\"f\"", "\"f", 1, 32, "has no end"},
-        {"\"f\"", "f", 1, 32, "text in quotes"},
-        {"[4, 2]", "[4]", 2, 11, "must be a ,"},
-        {"[4, 2]", "[4, 0]", 2, 13, "from 1 to 65536"},
-        {"[4, 2]", "[4, 1e3]", 2, 13, "whole number"},
-        {"[4, 2]", "[4, 65537]", 2, 13, "from 1 to 65536"},
-        {"auto", "half", 2, 30, "\"precision\" must be"},
-        {"\"frames\": [\n", "\"frames\": []}", 2, 49, "must be a {"},
-        {"\"frame\": 1", "\"frame\": -1", 3, 11, "whole number"},
-        {"\"frame\": 1", "\"frame\": 99999999999999999999", 3, 11, "whole number"},
-        {"\"frame\": 1", "\"frame\": 2", 4, 0, "frame 2 comes after frame 2"},
-        {"\"samples\": 2", "\"samples\": 0", 3, 25, "from 1 to 65536"},
-        {", \"samples\": 2", "", 3, 12, "either \"samples\" or"},
-        {"\"samples\": 2", "\"min\": 2", 3, 22, "either \"samples\" or"},
-        {"\"max\": 9", "\"samples\": 9", 4, 0, "either \"samples\" or"},
-        {"\"min\": 1", "\"min\": 10", 4, 0, "\"max\" is below \"min\""},
-        {"1e-3", "nan", 4, 0, "number from 0 to 1"},
-        {"1e-3", "1e-3x", 4, 0, "a comma or a }"},
-        {"1e-3", "2", 4, 0, "number from 0 to 1"},
-        {"1e-3", "0x1", 4, 0, "a comma or a }"},
-        {"]}\n", "]} x", 4, 0, "here must be the end"},
-        {"]}\n", "]", 4, 0, "a comma or a }"},
-    };
-    place_heard h;
-    assert_int_equal(read_bytes(&h, good, strlen(good)), ZT_OK);
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[1024];
-        const char *at = strstr(good, cases[i].from);
-        assert_non_null(at);
-        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].to,
-                 at + strlen(cases[i].from));
-        assert_int_equal(read_bytes(&h, text, strlen(text)), ZT_EFILE);
-        if (!strstr(h.text, cases[i].told))
-            fail_msg("%zu: \"%s\", not \"%s\"", i, h.text, cases[i].told);
-        if (cases[i].line &&
-            (h.line != cases[i].line || (cases[i].column && h.column != cases[i].column)))
-            fail_msg("%zu: %d:%d: %s", i, h.line, h.column, h.text);
-    }
-}
-
-/* Cut off anywhere, with any byte changed, and made of nothing but brackets: refused or read,
- * never more than that. */
-static void broken_manifests_do_no_harm(void **state) {
-    (void)state;
-    place_heard h;
-    for (size_t length = 0; length + 3 < sizeof good; length++)
-        assert_int_equal(read_bytes(&h, good, length), ZT_EFILE);
-    uint64_t random = 11;
-    for (int i = 0; i < 3000; i++) {
-        char bytes[sizeof good];
-        memcpy(bytes, good, sizeof good);
-        for (int k = 0; k < 1 + i % 3; k++)
-            bytes[(size_t)(test_random(&random) * (sizeof good - 1))] =
-                (char)(test_random(&random) * 256);
-        read_bytes(&h, bytes, sizeof good - 1);
-    }
-    char *deep = malloc(1 << 20);
-    assert_non_null(deep);
-    memset(deep, '[', 1 << 20);
-    assert_int_equal(read_bytes(&h, deep, 1 << 20), ZT_EFILE);
-    memset(deep, 0, 1 << 20);
-    assert_int_equal(read_bytes(&h, deep, 1 << 20), ZT_EFILE);
-    assert_true(strstr(h.text, "no text") != NULL);
-    free(deep);
-    zt_manifest *m;
-    h = (place_heard){0};
-    assert_int_equal(zt_manifest_read(&m, "missing", (zt_listener){hear_place, &h}), ZT_EFILE);
-    assert_true(strstr(h.text, "cannot read missing") != NULL);
-    assert_int_equal(zt_manifest_read(&m, ".", (zt_listener){hear_place, &h}), ZT_EFILE);
 }
 
 /* ---- films ----------------------------------------------------------------------------------
@@ -492,9 +325,6 @@ int main(void) {
         cmocka_unit_test(frames_are_done_in_time),
         cmocka_unit_test(noisy_frames_end),
         cmocka_unit_test(ends_of_the_range),
-        IN_DIRECTORY(manifests_come_back),
-        IN_DIRECTORY(hostile_manifests_are_refused),
-        IN_DIRECTORY(broken_manifests_do_no_harm),
         IN_DIRECTORY(films_come_out_again),
         IN_DIRECTORY(misuse),
         IN_DIRECTORY(exact_films_are_known),

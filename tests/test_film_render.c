@@ -215,9 +215,9 @@ static void films_go_on(void **state) {
     expect(target, &(change){.end = "3"}, 4, 3, 5);
     expect(target, &(change){0}, 4, 3, 5);
     assert_true(same(sixth, hash_of("a/f.06.png")));
-    struct stat done;
-    assert_int_equal(stat("a/f.##.png.done", &done), 0);
-    assert_int_equal(truncate("a/f.##.png.done", done.st_size - 40), 0);
+    struct stat noted;
+    assert_int_equal(stat("a/f.##.png.manifest", &noted), 0);
+    assert_int_equal(truncate("a/f.##.png.manifest", noted.st_size - 40), 0);
     expect(target, &(change){0}, 1, 0, 11); /* the last line was frame 11's */
     expect(target, &(change){0}, 0, 0, 12);
     assert_int_equal(access("a/f.##.png.lock", F_OK), -1);
@@ -279,8 +279,8 @@ static void one_at_a_time(void **state) {
     expect("l.##.png", &(change){0}, 5, 7, 0);
 }
 
-/* Several share a target, each a part of its own; nobody takes all of it meanwhile. What any of
- * them completed is known to all. */
+/* Several share a target, each a part of its own; nobody takes all of it meanwhile. What all of
+ * them completed is the whole film. */
 static void parts_share(void **state) {
     (void)state;
     static const char target[] = "p.##.png";
@@ -298,13 +298,16 @@ static void parts_share(void **state) {
     assert_told(&h, "p.##.png is being rendered by");
     assert_true(access("p.00.png", F_OK) != 0);
     assert_int_equal(render(&result, &h, target, &(change){0}, second, INT64_MAX), ZT_OK);
-    assert_int_equal(result.rendered + result.held, FRAMES);
+    assert_int_equal(result.count, FRAMES / 2);
+    assert_int_equal(result.rendered + result.held, FRAMES / 2);
+    assert_true(access("p.05.png", F_OK) != 0 && access("p.06.png", F_OK) == 0);
     assert_true(access("p.##.png.lock", F_OK) == 0 &&
                 access("p.##.png.2-of-2.lock", F_OK) != 0);
     close(part);
     close(whole);
     assert_int_equal(render(&result, &h, target, &(change){0}, first, INT64_MAX), ZT_OK);
-    assert_int_equal(result.kept, FRAMES);
+    assert_int_equal(result.rendered + result.held, FRAMES / 2);
+    expect(target, &(change){0}, 0, 0, FRAMES);
     assert_true(access("p.##.png.lock", F_OK) != 0 &&
                 access("p.##.png.1-of-2.lock", F_OK) != 0);
 }

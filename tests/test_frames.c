@@ -74,24 +74,6 @@ static void spread(void **state) {
     zt_frames_free(&frames);
 }
 
-/* The parts of a film are all of it, once, and none is longer than another by more than one. */
-static void parts(void **state) {
-    (void)state;
-    for (int count = 1; count <= 130; count += 7) {
-        int64_t next = 0;
-        for (int part = 1; part <= count; part++) {
-            zt_frames frames;
-            assert_int_equal(zt_frames_read(&frames, "0--1", 100, (zt_listener){0}), ZT_OK);
-            zt_frames_part(&frames, part, count);
-            assert_in_range(frames.count, 100 / count, (100 + count - 1) / count);
-            for (int64_t i = 0; i < frames.count; i++)
-                assert_int_equal(frames.numbers[i], next++);
-            zt_frames_free(&frames);
-        }
-        assert_int_equal(next, 100);
-    }
-}
-
 static void mistakes(void **state) {
     (void)state;
     assert_refused("", "a frame's number belongs here");
@@ -109,6 +91,6 @@ static void mistakes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(spread),
-                                       cmocka_unit_test(parts), cmocka_unit_test(mistakes)};
+                                       cmocka_unit_test(mistakes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,12 +18,14 @@ extern "C" {
 /* What is to be made. */
 typedef struct zt_film_order {
     const char *target;              /* as zt_output_open() takes it */
-    const zt_output_option *options; /* likewise; NULL: none */
-    const zt_frames *frames;  /* in the order in which they are rendered; those that are no
-                                 images of their own come in rising order */
-    int64_t part, part_count; /* which part of a film these are, where several processes share
-                                 the target: each its own, 1 .. part_count; 0, 0: all */
-    zt_budget budget;         /* for frames that follow each other; all are rendered then */
+    const zt_output_option *options; /* likewise; NULL: none. A movie that does not begin with
+                                        frame 0 has no sound, which is told */
+    const zt_frames *frames;  /* in the order in which images of their own are rendered; others,
+                                 and all with a budget, come in rising order */
+    int64_t part, part_count; /* 1 .. part_count: only this part of the frames, where several
+                                 processes share the target; 0, 0: all */
+    zt_budget budget;         /* zeros: none */
+    int64_t verify;           /* how many frames that are there are rendered again */
     bool overwrites;          /* whatever is there, and whatever is known of it */
     bool forgets; /* the target is not held, and nothing is remembered; overwrites */
     const char *description, *title; /* the description's file, and what the film is called */
@@ -33,15 +35,32 @@ typedef struct zt_film_order {
 
 /* What became of the frames. */
 typedef struct zt_film_result {
-    int64_t rendered, held, kept; /* rendered; the same as the one before; there already */
+    int64_t count;                /* of the frames, or of the part's */
+    int64_t rendered, held, kept; /* rendered; the same as another one; there already */
+    int64_t verified;             /* of the latter, rendered again and found to be the same */
 } zt_film_result;
 
-/* Renders what is missing. Of images, holds the target meanwhile, by TARGET.lock, or one
- * part of it: a second process is told who does so, with ZT_EFILE, and nothing changes. What is
- * completed of them is remembered in TARGET.done, so that the same order goes on where it was
- * stopped or failed; movies and checksums are made anew. The progress of `watcher` counts all
- * frames, those that are there already, too. ZT_EFILE also for files that are there but not of
- * this film, unless it overwrites. */
+/* Renders what is missing.
+ *
+ * Holds the target meanwhile, by TARGET.lock, or one part of it: a second process is told who
+ * does so, with ZT_EFILE, and nothing changes. What is completed is noted in TARGET.manifest
+ * (zt_manifest_read()), so that the same order goes on where it was stopped or failed, whatever
+ * ended it. What shows the same as another frame is not rendered twice. Checksums (.hash) are
+ * made anew, and neither held nor noted; but what a budget chose is, anew.
+ *
+ * Parts are divided by what the frames took before, where all of that is known, else evenly;
+ * all processes that render parts of the same film come to the same division, which is noted.
+ *
+ * With a budget, frames that were rendered with it and are there stay, and what they took is
+ * taken off its time for the film.
+ *
+ * Frames to be verified are spread over those that are there; the same ones each time. Where
+ * one comes out with other numbers than its file was made of, that is told, the file stays,
+ * nothing else is rendered, and it ends with ZT_EFILE.
+ *
+ * The progress of `watcher` counts all frames of the part, those that are there already, too.
+ * ZT_EFILE also for files that are there but not of this film, unless it overwrites. A film
+ * that is refused before its first frame leaves nothing behind. */
 zt_status zt_film_render(zt_film_result *result, zt_renderer *renderer,
                          const zt_film_order *order, const zt_watcher *watcher);
 

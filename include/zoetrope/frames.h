@@ -31,10 +31,6 @@ zt_status zt_frames_read(zt_frames *frames, const char *text, int64_t film_frame
                          zt_listener listener);
 void zt_frames_free(zt_frames *frames);
 
-/* Leaves part `part` of `count` equal ones, in the same order: 1 is the first. Some may be
- * empty: then count is 0. */
-void zt_frames_part(zt_frames *frames, int64_t part, int64_t count);
-
 /* Puts them in rising order, as a movie asks for. */
 void zt_frames_sort(zt_frames *frames);
 

@@ -82,7 +82,7 @@ static zt_render_settings choose_settings(const zt_options *options, const zt_fi
 }
 
 static void show_progress(void *user, int64_t done_count, int64_t total_count, int64_t frame) {
-    (void)total_count;
+    ((zt_progress *)user)->total_count = total_count;
     zt_progress_frame(user, done_count, frame);
 }
 
@@ -94,17 +94,6 @@ static void say_interrupted(const zt_progress *progress, const char *target) {
         zt_report_say(progress->report, ZT_WARNING,
                       "interrupted: %s has the first %" PRId64 " of %" PRId64 " frames", target,
                       progress->done_count, progress->total_count);
-}
-
-/* Beside the target: what its frames took. */
-static zt_status write_manifest(const zt_renderer *renderer, const char *description,
-                                const char *target, zt_report *report) {
-    char *path = NULL;
-    if (asprintf(&path, "%s.manifest", target) < 0) return ZT_EMEMORY;
-    zt_status status = zt_manifest_write(zt_renderer_manifest(renderer), path, description,
-                                         zt_report_listener(report));
-    free(path);
-    return status;
 }
 
 /* Renders into the output, which is told the film's title and sound. */
@@ -125,13 +114,6 @@ static zt_status render_film(zt_film_result *result, zt_renderer *renderer,
     return status;
 }
 
-/* The film's sound is that from its first frame on. */
-static const char *audio_from(const zt_film *film, int64_t first, zt_report *report) {
-    if (film->audio && first > 0)
-        zt_report_say(report, ZT_WARNING, "no sound: that of the film begins with frame 0");
-    return first > 0 ? NULL : film->audio;
-}
-
 /* Renders the frames that the target lacks. */
 static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                               const zt_frames *frames, const char *target, const char *audio,
@@ -150,15 +132,10 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
     listen_for_interrupts();
     zt_progress progress = zt_progress_begin(report, frames->count);
     zt_status status = render_film(&result, renderer, &order, options, audio, &progress);
-    if ((status == ZT_OK || status == ZT_ESTOPPED) && progress.done_count > 0 &&
-        zt_renderer_manifest(renderer)) {
-        zt_status kept = write_manifest(renderer, options->file, target, report);
-        if (kept != ZT_OK) return kept;
-    }
     if (result.kept > 0)
         zt_report_say(report, ZT_NOTE, "%" PRId64 " of %" PRId64 " frames were there already",
-                      result.kept, frames->count);
-    if (status == ZT_OK) zt_progress_end(&progress, target);
+                      result.kept, result.count);
+    if (status == ZT_OK && result.count > 0) zt_progress_end(&progress, target);
     if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
     return status;
 }
@@ -178,11 +155,7 @@ static zt_status render(const zt_options *options, const zt_manifest *manifest,
     const zt_film *film = zt_animation_film(animation);
     zt_frames frames = {0};
     zt_status status = zt_options_frames(&frames, options, film, report);
-    if (status != ZT_OK || frames.count == 0) {
-        zt_frames_free(&frames);
-        return status;
-    }
-    int64_t first = frames.numbers[0];
+    if (status != ZT_OK) return status;
     char *target = zt_options_target(options);
     zt_render_settings settings = choose_settings(options, film);
     zt_renderer *renderer = NULL;
@@ -193,8 +166,7 @@ static zt_status render(const zt_options *options, const zt_manifest *manifest,
     if (status == ZT_OK && options->replays)
         status = replay(renderer, options, report);
     else if (status == ZT_OK)
-        status = write_frames(renderer, options, &frames, target,
-                              audio_from(film, first, report), report);
+        status = write_frames(renderer, options, &frames, target, film->audio, report);
     zt_renderer_close(&renderer);
     zt_frames_free(&frames);
     free(target);

@@ -358,12 +358,5 @@ zt_status zt_options_frames(zt_frames *frames, const zt_options *options, const 
     if (!options->all_frames)
         snprintf(range, sizeof range, "%" PRId64 "-%" PRId64, options->first, options->last);
     const char *text = options->frame_list ? options->frame_list : range;
-    zt_status status =
-        zt_frames_read(frames, text, film->frame_count, zt_report_listener(report));
-    if (status != ZT_OK || options->part_count == 0) return status;
-    zt_frames_part(frames, options->part, options->part_count);
-    if (frames->count == 0)
-        zt_report_say(report, ZT_WARNING, "chunk %" PRId64 "/%" PRId64 " has no frames",
-                      options->part, options->part_count);
-    return ZT_OK;
+    return zt_frames_read(frames, text, film->frame_count, zt_report_listener(report));
 }

@@ -18,7 +18,7 @@ typedef struct zt_options {
     const char *target;            /* NULL: the command's own */
     const char *question;          /* of explain: "ball.center@37"; NULL: precisions */
     const char *frame_list;        /* as zt_frames_read takes it, not yet read; or NULL */
-    int64_t part, part_count;      /* of the frames, as zt_frames_part takes it; 0: all */
+    int64_t part, part_count;      /* of the frames, as zt_film_order has it; 0: all */
     bool overwrites;               /* what is there, instead of going on with it */
     bool filters;                  /* of report: each of them */
     const char *const *properties; /* of curves: property_count names, none for all */
@@ -59,9 +59,8 @@ const char *zt_options_name(int *length, const zt_options *options);
  * command. Of the caller to free; NULL when out of memory. */
 char *zt_options_target(const zt_options *options);
 
-/* The frames that were asked for, in their order: the list, or first .. last, or all, and of
- * these the part. It may be empty where there are more parts than frames, which is told.
- * ZT_EARGUMENT after telling of frames that the film has not. The caller frees them. */
+/* The frames that were asked for, in their order: the list, or first .. last, or all, of which
+ * a part may be rendered. ZT_EARGUMENT after telling of frames that the film has not. The caller frees them. */
 zt_status zt_options_frames(zt_frames *frames, const zt_options *options, const zt_film *film,
                             zt_report *report);
 

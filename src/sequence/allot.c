@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "base/diag.h"
-#include "sequence/manifest.h"
 #include "sequence/pacing.h"
 #include "sequence/pilot.h"
 
@@ -28,17 +28,17 @@ static words in_words(double seconds) {
 
 /* What the frames are allotted: from the least to the most. */
 static void say_allotted(const zt_plan *p, zt_listener listener) {
-    zt_sampling first = zt_plan_sampling(p, p->first);
+    zt_sampling first = zt_plan_sampling(p, p->frames[0]);
     double low_error = first.error, high_error = first.error, all_s = 0;
     int low = first.max, high = first.max;
     bool adaptive = first.min != first.max;
-    for (int64_t frame = p->first; frame <= p->last; frame++) {
-        zt_sampling s = zt_plan_sampling(p, frame);
+    for (int64_t i = 0; i < p->frame_count; i++) {
+        zt_sampling s = zt_plan_sampling(p, p->frames[i]);
         low = s.max < low ? s.max : low;
         high = s.max > high ? s.max : high;
         low_error = fmin(low_error, s.error);
         high_error = fmax(high_error, s.error);
-        all_s += zt_plan_seconds(p, frame);
+        all_s += zt_plan_seconds(p, p->frames[i]);
     }
     words time = in_words(all_s);
     if (adaptive && low_error < high_error)
@@ -57,7 +57,7 @@ static void say_allotted(const zt_plan *p, zt_listener listener) {
 
 /* What cannot be met, or need not be. */
 static void say_doubts(const zt_plan *p, double passed_s, zt_listener listener) {
-    double frame_count = (double)(p->last - p->first + 1);
+    double frame_count = (double)p->frame_count;
     bool film = p->budget.film_s > 0;
     double wanted_s = film ? p->budget.film_s : p->budget.frame_s;
     double least_s = film ? passed_s + zt_plan_least_s(p) : zt_plan_least_s(p) / frame_count;
@@ -82,18 +82,23 @@ static zt_status allot(zt_pacing *p, zt_renderer *r, const zt_watcher *watcher) 
     return ZT_OK;
 }
 
-zt_status zt_renderer_budget(zt_renderer *r, int64_t first, int64_t last,
-                             const zt_budget *budget, const zt_watcher *watcher) {
-    if (last < first || (budget->frame_s > 0) == (budget->film_s > 0)) return ZT_EARGUMENT;
+zt_status zt_renderer_budget(zt_renderer *r, const zt_frames *frames, const zt_budget *budget,
+                             const zt_watcher *watcher) {
+    if (frames->count < 1 || (budget->frame_s > 0) == (budget->film_s > 0)) return ZT_EARGUMENT;
     zt_pacing_free(&r->pacing);
     zt_pacing *p = calloc(1, sizeof *p);
-    if (!p) return ZT_EMEMORY;
-    *p = (zt_pacing){
-        .plan = {.first = first, .last = last, .budget = *budget, .sampling = r->sampling},
-        .begun_s = zt_clock_s(),
-        .next = first,
-        .manifest = zt_manifest_create(r->format.width, r->format.height, r->precision)};
-    zt_status status = p->manifest ? allot(p, r, watcher) : ZT_EMEMORY;
+    int64_t *numbers = calloc((size_t)frames->count, sizeof *numbers);
+    if (p) p->plan.frames = numbers;
+    if (!p || !numbers) {
+        zt_pacing_free(&p);
+        return ZT_EMEMORY;
+    }
+    memcpy(numbers, frames->numbers, (size_t)frames->count * sizeof *numbers);
+    p->plan.frame_count = frames->count;
+    p->plan.budget = *budget;
+    p->plan.sampling = r->sampling;
+    p->begun_s = zt_clock_s();
+    zt_status status = allot(p, r, watcher);
     if (status == ZT_OK)
         r->pacing = p;
     else

@@ -74,17 +74,16 @@ static double best_level(const zt_plan *p, double passed_s) {
 
 void zt_plan_begin(zt_plan *p, double passed_s) {
     p->left_fixed_s = p->left_unit_s = p->saved_s = 0;
-    for (int64_t frame = p->first; frame <= p->last; frame++) {
-        zt_cost c = cost_of(p, frame);
+    for (int64_t i = 0; i < p->frame_count; i++) {
+        zt_cost c = cost_of(p, p->frames[i]);
         p->left_fixed_s += c.fixed_s;
         p->left_unit_s += c.unit_s * c.share;
     }
     p->took_s = p->meant_s = 1; /* whatever: as fast as was seen */
     p->level = best_level(p, passed_s);
-    double frame_count = (double)(p->last - p->first + 1);
-    double meant_s = p->budget.film_s > 0
-                         ? (p->left_fixed_s + p->left_unit_s * p->level) / frame_count
-                         : p->budget.frame_s;
+    double meant_s = p->budget.film_s > 0 ? (p->left_fixed_s + p->left_unit_s * p->level) /
+                                                (double)p->frame_count
+                                          : p->budget.frame_s;
     p->took_s = p->meant_s = TRUST * meant_s;
 }
 
@@ -123,14 +122,14 @@ void zt_plan_done(zt_plan *p, int64_t frame, double took_s, double passed_s) {
     p->meant_s = MEMORY * p->meant_s + zt_plan_seconds(p, frame);
     p->left_fixed_s -= c.fixed_s;
     p->left_unit_s -= c.unit_s * c.share;
-    if (frame < p->last)
+    if (frame != p->frames[p->frame_count - 1])
         p->level = fmin(fmax(best_level(p, passed_s), p->level / STEP), p->level * STEP);
 }
 
 double zt_plan_least_s(const zt_plan *p) {
     double sum = 0;
-    for (int64_t frame = p->first; frame <= p->last; frame++) {
-        zt_cost c = cost_of(p, frame);
+    for (int64_t i = 0; i < p->frame_count; i++) {
+        zt_cost c = cost_of(p, p->frames[i]);
         sum += c.fixed_s + (is_adaptive(p) ? 0 : c.unit_s);
     }
     return sum;

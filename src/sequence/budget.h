@@ -19,7 +19,8 @@ enum { ZT_COSTS_MAX = 9, ZT_PLAN_SAMPLES_MAX = 65536 };
 
 /* Costs of frames between those that were looked at follow from their neighbours. */
 typedef struct zt_plan {
-    int64_t first, last;
+    const int64_t *frames; /* rising; each comes in turn */
+    int64_t frame_count;   /* at least 1 */
     zt_budget budget;
     zt_sampling sampling;        /* what the description says but for numbers */
     double power;                /* of adaptive sampling */
@@ -45,7 +46,7 @@ zt_sampling zt_plan_sampling(const zt_plan *plan, int64_t frame);
 /* How long it may take with that. */
 double zt_plan_seconds(const zt_plan *plan, int64_t frame);
 
-/* A frame, one after the other from the first on, is done. `took_s` is its own time. */
+/* The next frame is done. `took_s` is its own time. */
 void zt_plan_done(zt_plan *plan, int64_t frame, double took_s, double passed_s);
 
 /* How long all frames take with the least that can be asked of them. */

@@ -2,31 +2,46 @@
 #include <zoetrope/film.h>
 
 #include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/diag.h"
 #include "base/text.h"
 #include "image/file.h"
+#include "sequence/again.h"
 #include "sequence/hold.h"
+#include "sequence/manifest.h"
 #include "sequence/outway.h"
+#include "sequence/pacing.h"
 #include "sequence/renderer.h"
 #include "sequence/settings.h"
+#include "sequence/split.h"
+#include "sequence/verify.h"
 
 /* A film under way. */
 typedef struct making {
     zt_renderer *renderer;
+    const zt_film_order *order;
     const zt_watcher *watcher;
-    zt_output *output;
     zt_film_result *result;
-    zt_frames frames; /* in the order in which they come */
-    zt_hash *keys;    /* likewise */
-    bool forgets;
-    bool planned; /* keys are known before the first frame; else each when it is its turn */
-    bool timed;   /* a budget decides the samples, and with them the keys, later */
+    zt_frames frames;         /* in the order in which they come */
+    zt_hash *keys;            /* likewise */
+    bool *wanted;             /* likewise: those that are not there */
+    zt_manifest_frame *made;  /* as they were rendered, by rising number */
+    zt_output_option *wishes; /* the order's, but for what is not for these frames */
+    bool still;               /* images of their own, not a file for all */
+    bool remembers;           /* else it is made anew */
+    bool planned;   /* keys are known before the first frame; else each when it is its turn */
+    bool timed;     /* a budget decides the samples, and with them the keys, later */
+    zt_frames rest; /* of those, what is left to be rendered */
+    zt_hold hold;
+    zt_notes notes;
+    zt_output *output;
     zt_outway *way;
-    zt_image *last; /* that was lent and filled; NULL: none */
-    zt_image_info info;
+    zt_again *again; /* NULL: no two frames are known to be equal */
+    zt_image *last;  /* that was lent and filled; NULL: none */
     zt_settings_texts settings;
 } making;
 
@@ -37,64 +52,113 @@ static bool ends_with_any(const char *target, const char *const *endings) {
     return *endings;
 }
 
-static bool is_still(const char *target) {
-    return ends_with_any(target, zt_image_file_endings);
+static zt_status ask_to_go_on(const making *m) {
+    const zt_watcher *w = m->watcher;
+    return w && w->stopped && w->stopped(w->user) ? ZT_ESTOPPED : ZT_OK;
 }
 
-/* Checksums are made anew. */
-static bool is_remembered(const zt_film_order *order) {
-    static const char *const made_anew[] = {".hash", NULL};
-    return !order->forgets && !ends_with_any(order->target, made_anew);
+/* ---- what is noted --------------------------------------------------------------------------
+ */
+
+static int by_frame(const void *a, const void *b) {
+    const zt_manifest_frame *one = a, *other = b;
+    return (one->frame > other->frame) - (one->frame < other->frame);
 }
 
-static zt_status find_keys(making *m) {
-    for (int64_t i = 0; i < m->frames.count && m->planned; i++) {
-        if (m->watcher && m->watcher->stopped && m->watcher->stopped(m->watcher->user))
-            return ZT_ESTOPPED;
-        ZT_TRY(zt_renderer_key(&m->keys[i], m->renderer, m->frames.numbers[i]));
+static zt_manifest_frame *made_of(const making *m, int64_t frame) {
+    const zt_manifest_frame wanted = {.frame = frame};
+    return bsearch(&wanted, m->made, (size_t)m->frames.count, sizeof wanted, by_frame);
+}
+
+/* Something was completed: called by the output, in turn. */
+static zt_status note_record(void *user, const zt_output_record *record) {
+    making *m = user;
+    zt_manifest_line line = {.kind = ZT_LINE_PIECE, .record = *record};
+    if (record->kind == ZT_RECORD_IMAGE) {
+        const char *slash = record->file ? strrchr(record->file, '/') : NULL;
+        if (slash) line.record.file = slash + 1;
+        line.kind = ZT_LINE_FRAME;
+        line.frame = *made_of(m, record->first);
     }
-    return ZT_OK;
+    return zt_notes_add(&m->notes, &line);
 }
 
-/* Renders the image of a position, or leaves the last one where it shows the same. */
-static zt_status make_image(making *m, const zt_film_order *order, int64_t position) {
-    int64_t frame = m->frames.numbers[position];
+/* Of images the output tells later, when they are complete. */
+static zt_status note_frame(making *m, const zt_manifest_frame *made) {
+    if ((m->still && m->remembers) || !(m->remembers || m->timed)) return ZT_OK;
+    return zt_notes_add(&m->notes, &(zt_manifest_line){.kind = ZT_LINE_FRAME, .frame = *made});
+}
+
+/* ---- rendering ------------------------------------------------------------------------------
+ */
+
+static zt_status render_image(making *m, int64_t frame, zt_hash key) {
     zt_renderer *r = m->renderer;
-    if (!m->planned && !m->forgets) ZT_TRY(zt_renderer_key(&m->keys[position], r, frame));
-    zt_hash key = m->keys[position];
-    if (m->last && !m->timed && !m->forgets && same(m->info.key, key)) {
-        m->info.frame = frame;
-        m->result->held++;
-        return ZT_OK;
-    }
-    if (m->last) zt_outway_release(m->way, m->last);
-    m->last = NULL;
-    ZT_TRY(zt_outway_lend(&m->last, m->way));
-    ZT_TRY(zt_settings_of_frame(&m->settings, r, order, frame));
+    zt_manifest_frame *made = made_of(m, frame);
+    zt_sampling sampling;
+    ZT_TRY(zt_settings_of_frame(&m->settings, r, m->order, frame));
+    ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
     ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
-    m->info = (zt_image_info){.known = !m->forgets,
-                              .frame = frame,
-                              .rate = r->format.rate,
-                              .key = key,
-                              .render_s = r->cost.render_s,
-                              .seed = r->sampling.seed,
-                              .title = order->title,
-                              .description = order->description,
-                              .settings = m->settings.text};
-    memcpy(m->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
-    memcpy(m->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
+    m->last->info = (zt_image_info){.known = !m->order->forgets,
+                                    .frame = frame,
+                                    .rate = r->format.rate,
+                                    .key = key,
+                                    .render_s = r->cost.render_s,
+                                    .seed = r->sampling.seed,
+                                    .title = m->order->title,
+                                    .description = m->order->description,
+                                    .settings = m->settings.text};
+    memcpy(m->last->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
+    memcpy(m->last->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
+    made->key = key;
+    made->pixels = zt_verify_checksum(m->last);
+    made->render_s = r->cost.freeze_s + r->cost.prepare_s + r->cost.render_s;
+    if (m->timed) {
+        made->min = sampling.min;
+        made->max = sampling.max;
+        made->error = sampling.error;
+        made->mean_max = sampling.mean_max;
+        made->budget = m->order->budget;
+    }
     m->result->rendered++;
     return ZT_OK;
 }
 
-static zt_status make_all(making *m, const zt_film_order *order) {
+/* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */
+static zt_status make_image(making *m, int64_t position) {
+    int64_t frame = m->frames.numbers[position], before = m->last ? m->last->info.frame : -1;
+    zt_hash *key = &m->keys[position];
+    if (!m->planned && !m->order->forgets) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
+    bool equal = m->last && !m->timed && !m->order->forgets && same(m->last->info.key, *key);
+    const zt_image *kept = m->again && !equal ? zt_again_find(m->again, position) : NULL;
+    if (!equal) {
+        if (m->last) zt_outway_release(m->way, m->last);
+        m->last = NULL;
+        ZT_TRY(zt_outway_lend(&m->last, m->way));
+    }
+    if (!equal && !kept) return render_image(m, frame, *key);
+    if (kept) zt_again_copy(m->last, kept);
+    if (kept) before = kept->info.frame;
+    zt_manifest_frame *made = made_of(m, frame);
+    *made = *made_of(m, before);
+    made->frame = frame;
+    m->result->held++;
+    return ZT_OK;
+}
+
+static zt_status make_and_send(making *m, int64_t position) {
+    int64_t frame = m->frames.numbers[position];
+    ZT_TRY(make_image(m, position));
+    zt_image_info info = m->last->info;
+    info.frame = frame;
+    ZT_TRY(zt_outway_send(m->way, m->last, &info));
+    if (m->again) ZT_TRY(zt_again_keep(m->again, position, m->last));
+    return note_frame(m, made_of(m, frame));
+}
+
+static zt_status make_all(making *m) {
     for (int64_t i = 0; i < m->frames.count; i++) {
-        if (zt_output_wants(m->output, i)) {
-            ZT_TRY(make_image(m, order, i));
-            ZT_TRY(zt_outway_send(m->way, m->last, &m->info));
-        } else {
-            m->result->kept++;
-        }
+        if (m->wanted[i]) ZT_TRY(make_and_send(m, i));
         if (m->watcher && m->watcher->progress)
             m->watcher->progress(m->watcher->user, i + 1, m->frames.count,
                                  m->frames.numbers[i]);
@@ -102,79 +166,230 @@ static zt_status make_all(making *m, const zt_film_order *order) {
     return ZT_OK;
 }
 
-/* Finds out how many samples there is time for. */
-static zt_status take_budget(making *m, const zt_film_order *order) {
-    const zt_frames *f = &m->frames;
-    if (!m->timed) return ZT_OK;
-    for (int64_t i = 1; i < f->count; i++) {
-        if (f->numbers[i] == f->numbers[0] + i) continue;
-        zt_tell(m->renderer->listener, ZT_ERROR,
-                "a budget of time is for frames that follow each other, and %" PRId64
-                " comes after %" PRId64,
-                f->numbers[i], f->numbers[i - 1]);
-        return ZT_EARGUMENT;
-    }
-    return zt_renderer_budget(m->renderer, f->numbers[0], f->numbers[f->count - 1],
-                              &order->budget, m->watcher);
-}
-
-static zt_status render_into(making *m, const zt_film_order *order) {
+static zt_status render_wanted(making *m) {
     const zt_renderer *r = m->renderer;
-    ZT_TRY(take_budget(m, order));
+    if (m->planned) ZT_TRY(zt_again_open(&m->again, m->keys, m->wanted, m->frames.count));
     ZT_TRY(zt_outway_open(&m->way, m->output, r->format.width, r->format.height, r->aovs,
                           zt_pool_thread_count(r->pool)));
-    zt_status status = make_all(m, order);
+    zt_status status = make_all(m);
     if (m->last) zt_outway_release(m->way, m->last);
     zt_status written = zt_outway_close(&m->way); /* waits for what is still being written */
     return written != ZT_OK ? written : status;
 }
 
-/* With what the target is known to hold. */
-static zt_status render_held(making *m, const zt_film_order *order, zt_hold *hold) {
+/* ---- with a budget --------------------------------------------------------------------------
+ */
+
+/* Whether a frame has what this budget chose for it, by this way of sampling. */
+static bool is_of_budget(const making *m, const zt_manifest_frame *f) {
+    const zt_sampling *s = &m->renderer->sampling;
+    const zt_budget *b = &m->order->budget;
+    bool adaptive = s->min != s->max;
+    return f && f->max > 0 && f->budget.film_s == b->film_s &&
+           f->budget.frame_s == b->frame_s &&
+           (adaptive ? f->min == s->min && f->error > 0 : f->min == f->max);
+}
+
+/* Finds out how many samples there is time for. */
+static zt_status take_budget(making *m) {
+    zt_budget left = m->order->budget;
+    m->rest.numbers = calloc((size_t)m->frames.count, sizeof *m->rest.numbers);
+    if (!m->rest.numbers) return ZT_EMEMORY;
+    for (int64_t i = 0; i < m->frames.count; i++) {
+        if (m->wanted[i])
+            m->rest.numbers[m->rest.count++] = m->frames.numbers[i];
+        else
+            left.film_s -= fmax(zt_manifest_time(m->notes.known, m->frames.numbers[i]), 0);
+    }
+    const double least = 1e-3; /* of it, that is left whatever was spent */
+    if (m->order->budget.film_s > 0)
+        left.film_s = fmax(left.film_s, least * m->order->budget.film_s);
+    if (m->rest.count == 0) return ZT_OK;
+    return zt_renderer_budget(m->renderer, &m->rest, &left, m->watcher);
+}
+
+/* ---- before the first frame -----------------------------------------------------------------
+ */
+
+/* With a budget, those of frames that were rendered with it. */
+static zt_status find_keys(making *m) {
+    zt_renderer *r = m->renderer;
+    const zt_manifest *followed = r->followed;
+    zt_status status = ZT_OK;
+    bool plans = m->remembers && !(m->timed && m->order->overwrites);
+    for (int64_t i = 0; i < m->frames.count && plans && status == ZT_OK; i++) {
+        const zt_manifest *known = m->notes.known;
+        const zt_manifest_frame *found = zt_manifest_find(known, m->frames.numbers[i]);
+        if (m->timed && !is_of_budget(m, found)) continue;
+        if (m->timed) zt_renderer_follow(r, known);
+        status = ask_to_go_on(m);
+        if (status == ZT_OK) status = zt_renderer_key(&m->keys[i], r, m->frames.numbers[i]);
+    }
+    zt_renderer_follow(r, followed);
+    return status;
+}
+
+/* Asks the output what it lacks. */
+static zt_status find_wanted(making *m) {
+    for (int64_t i = 0; i < m->frames.count; i++) {
+        ZT_TRY(ask_to_go_on(m));
+        m->wanted[i] = zt_output_wants(m->output, i);
+        m->result->kept += !m->wanted[i];
+    }
+    return ZT_OK;
+}
+
+static zt_status make_film(making *m) {
+    ZT_TRY(find_wanted(m));
+    const zt_verify_job job = {m->frames.numbers, m->keys,        m->wanted,
+                               m->frames.count,   m->notes.known, m->order->target};
+    if (m->order->verify > 0 && m->remembers)
+        ZT_TRY(zt_verify_frames(&m->result->verified, &job, m->order->verify, m->renderer,
+                                m->watcher));
+    if (m->timed) ZT_TRY(take_budget(m));
+    return render_wanted(m);
+}
+
+/* A film's sound is that from its first frame on. */
+static zt_status choose_wishes(making *m) {
+    const zt_output_option *wish = m->order->options;
+    size_t count = 0;
+    while (wish && wish[count].name) count++;
+    zt_output_option *next = m->wishes = calloc(count + 1, sizeof *m->wishes);
+    if (!m->wishes) return ZT_EMEMORY;
+    for (; wish && wish->name; wish++) {
+        bool mute = zt_text_equal(wish->name, "audio") && m->frames.numbers[0] > 0;
+        if (!mute) *next++ = *wish;
+        if (mute && wish->value && !m->still)
+            zt_tell(m->renderer->listener, ZT_WARNING,
+                    "no sound: that of the film begins with frame 0");
+    }
+    return ZT_OK;
+}
+
+static zt_status make_into_output(making *m) {
     zt_output_format format = m->renderer->format;
-    zt_output_plan plan = {
-        m->frames.numbers,  m->keys,           m->frames.count, hold->records,
-        hold->record_count, order->overwrites, zt_hold_record,  hold};
+    const zt_output_plan plan = {.frames = m->frames.numbers,
+                                 .keys = m->keys,
+                                 .count = m->frames.count,
+                                 .records = m->notes.known ? m->notes.known->records : NULL,
+                                 .record_count =
+                                     m->notes.known ? (int64_t)m->notes.known->record_count : 0,
+                                 .overwrites = m->order->overwrites,
+                                 .completed = note_record,
+                                 .user = m};
+    m->planned = m->remembers && !m->timed;
     format.frame_count = m->frames.count;
-    if (is_remembered(order)) format.plan = &plan;
-    m->planned = format.plan && !m->timed;
+    if (m->remembers) format.plan = &plan;
     ZT_TRY(find_keys(m));
-    ZT_TRY(zt_output_open(&m->output, order->target, &format, order->options,
+    if (m->planned && m->still)
+        ZT_TRY(zt_again_group(m->frames.numbers, m->keys, m->frames.count));
+    ZT_TRY(choose_wishes(m));
+    ZT_TRY(zt_output_open(&m->output, m->order->target, &format, m->wishes,
                           m->renderer->listener));
-    zt_status status = render_into(m, order);
+    zt_status status = make_film(m);
     zt_status closed = zt_output_close(&m->output);
     return closed != ZT_OK ? closed : status;
 }
 
-/* A movie's frames rise. */
-static zt_status copy_frames(making *m, const zt_film_order *order) {
-    m->frames.count = order->frames->count;
-    m->frames.numbers = calloc((size_t)m->frames.count, sizeof *m->frames.numbers);
-    m->keys = calloc((size_t)m->frames.count, sizeof *m->keys);
-    if (!m->frames.numbers || !m->keys) return ZT_EMEMORY;
-    memcpy(m->frames.numbers, order->frames->numbers,
-           (size_t)m->frames.count * sizeof *m->frames.numbers);
-    if (!is_still(order->target)) zt_frames_sort(&m->frames);
+static zt_status take_part(making *m) {
+    const zt_film_order *o = m->order;
+    if (o->part_count > 0)
+        ZT_TRY(zt_split_take(&m->frames, o->part, o->part_count,
+                             m->remembers ? &m->notes : NULL, m->renderer));
+    m->result->count = m->frames.count;
+    if (m->frames.count == 0)
+        zt_tell(m->renderer->listener, ZT_WARNING,
+                "part %" PRId64 " of %" PRId64 " has no frames", o->part, o->part_count);
     return ZT_OK;
+}
+
+static zt_status push_lists(making *m) {
+    size_t count = (size_t)m->frames.count;
+    m->keys = calloc(count, sizeof *m->keys);
+    m->wanted = calloc(count, sizeof *m->wanted);
+    m->made = calloc(count, sizeof *m->made);
+    if (!m->keys || !m->wanted || !m->made) return ZT_EMEMORY;
+    for (size_t i = 0; i < count; i++)
+        m->made[i] = (zt_manifest_frame){.frame = m->frames.numbers[i], .render_s = -1};
+    qsort(m->made, count, sizeof *m->made, by_frame);
+    return ZT_OK;
+}
+
+/* How outputs are written, in words for the manifest: "codec=h265 crf=20". NULL when out of
+ * memory. */
+static char *print_wishes(const zt_output_option *wish) {
+    char *text = NULL;
+    size_t length;
+    FILE *stream = open_memstream(&text, &length);
+    if (!stream) return NULL;
+    for (const char *gap = ""; wish && wish->name; wish++) {
+        if (!wish->value) continue;
+        fprintf(stream, "%s%s=%s", gap, wish->name, wish->value);
+        gap = " ";
+    }
+    if (fclose(stream) == 0) return text;
+    free(text);
+    return NULL;
+}
+
+static zt_status open_notes(making *m) {
+    const zt_renderer *r = m->renderer;
+    char *written = print_wishes(m->order->options);
+    if (!written) return ZT_EMEMORY;
+    const zt_manifest_line header = {.kind = ZT_LINE_HEADER,
+                                     .width = r->format.width,
+                                     .height = r->format.height,
+                                     .precision = r->precision,
+                                     .description = m->order->description,
+                                     .written = written};
+    bool alone = m->remembers && m->order->part_count == 0;
+    zt_status status =
+        zt_notes_open(&m->notes, m->order->target, &header, !m->remembers, alone, r->listener);
+    free(written);
+    return status;
+}
+
+static zt_status make(making *m) {
+    const zt_film_order *o = m->order;
+    m->frames.count = o->frames->count;
+    m->frames.numbers = calloc((size_t)m->frames.count, sizeof *m->frames.numbers);
+    if (!m->frames.numbers) return ZT_EMEMORY;
+    memcpy(m->frames.numbers, o->frames->numbers,
+           (size_t)m->frames.count * sizeof *m->frames.numbers);
+    if (!m->still || m->timed) zt_frames_sort(&m->frames);
+    if (m->remembers)
+        ZT_TRY(
+            zt_hold_open(&m->hold, o->target, o->part, o->part_count, m->renderer->listener));
+    if (m->remembers || m->timed) ZT_TRY(open_notes(m));
+    ZT_TRY(take_part(m));
+    if (m->frames.count == 0) return ZT_OK;
+    ZT_TRY(push_lists(m));
+    return make_into_output(m);
 }
 
 zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_order *order,
                          const zt_watcher *watcher) {
+    static const char *const made_anew[] = {".hash", NULL};
     *result = (zt_film_result){0};
     if (order->frames->count < 1) return ZT_EARGUMENT;
-    making m = {.renderer = r, .watcher = watcher, .result = result};
-    m.forgets = order->forgets;
+    making m = {.renderer = r, .order = order, .watcher = watcher, .result = result};
+    m.still = ends_with_any(order->target, zt_image_file_endings);
+    m.remembers = !order->forgets && !ends_with_any(order->target, made_anew);
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;
-    zt_hold hold = {0};
-    zt_status status = copy_frames(&m, order);
-    if (status == ZT_OK && is_remembered(order))
-        status =
-            zt_hold_open(&hold, order->target, order->part, order->part_count, r->listener);
-    if (status == ZT_OK) status = render_held(&m, order, &hold);
-    zt_status let_go = zt_hold_close(&hold);
-    if (status == ZT_OK) status = let_go;
+    zt_status status = make(&m);
+    bool nothing = status != ZT_OK && result->rendered == 0;
+    zt_status noted =
+        zt_notes_close(&m.notes, nothing && (!m.remembers || zt_hold_alone(&m.hold)));
+    if (status == ZT_OK) status = noted;
+    zt_hold_close(&m.hold);
+    zt_again_close(&m.again);
     zt_frames_free(&m.frames);
+    zt_frames_free(&m.rest);
     zt_arena_free(&m.settings.arena);
+    free(m.wishes);
+    free(m.made);
+    free(m.wanted);
     free(m.keys);
     return status;
 }

@@ -167,13 +167,6 @@ void zt_frames_free(zt_frames *frames) {
     *frames = (zt_frames){0};
 }
 
-void zt_frames_part(zt_frames *frames, int64_t part, int64_t count) {
-    int64_t first = frames->count * (part - 1) / count, end = frames->count * part / count;
-    memmove(frames->numbers, frames->numbers + first,
-            (size_t)(end - first) * sizeof *frames->numbers);
-    frames->count = end - first;
-}
-
 static int rising(const void *pa, const void *pb) {
     const int64_t *a = pa, *b = pb;
     return (*a > *b) - (*a < *b);

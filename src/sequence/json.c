@@ -76,7 +76,8 @@ zt_status zt_json_refuse(zt_json *json, const char *format, ...) {
     va_end(arguments);
     const char *line = json->taken;
     while (line > json->text && line[-1] != '\n') line--;
-    zt_place place = {.file = json->path, .source_line = line, .line = 1, .length = 1};
+    zt_place place = {
+        .file = json->path, .source_line = line, .line = json->lines_before + 1, .length = 1};
     for (const char *c = json->text; c < line; c++) place.line += *c == '\n';
     place.column = (int)(json->taken - line) + 1;
     zt_tell_at(json->listener, ZT_ERROR, &place, "%s", text);

@@ -16,6 +16,7 @@ typedef struct zt_json {
     const char *at;    /* what has not been read yet */
     const char *taken; /* where the piece that was read last began */
     const char *path;
+    int lines_before; /* the text, in what it is a part of */
     zt_listener listener;
 } zt_json;
 

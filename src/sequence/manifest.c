@@ -1,86 +1,65 @@
-/* Manifests: frames and what they were rendered with, kept in order, written and read. */
+/* What is known from the lines of a manifest. */
 #include "sequence/manifest.h"
 
 #include <errno.h>
-#include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/diag.h"
-#include "encode/aside.h"
-#include "sequence/json.h"
+#include "base/text.h"
 
-enum { SAMPLES_MAX = 65536 };
-static const int64_t frame_max = INT64_C(1) << 40;
-
-struct zt_manifest {
-    int width, height;
-    zt_precision precision;
-    zt_manifest_frame *frames; /* by rising number */
-    size_t count, capacity;
-};
-
-static const char *const precisions[] = {[ZT_PRECISION_AUTO] = "auto",
-                                         [ZT_PRECISION_SINGLE] = "single",
-                                         [ZT_PRECISION_DOUBLE] = "double"};
-
-zt_manifest *zt_manifest_create(int width, int height, zt_precision precision) {
-    zt_manifest *manifest = calloc(1, sizeof *manifest);
-    if (manifest)
-        *manifest = (zt_manifest){.width = width, .height = height, .precision = precision};
-    return manifest;
-}
+static const int64_t size_max = INT64_C(1) << 30; /* ten times the longest film's */
 
 void zt_manifest_free(zt_manifest **slot) {
-    if (*slot) free((*slot)->frames);
-    free(*slot);
+    zt_manifest *m = *slot;
+    if (!m) return;
+    free(m->header);
+    free(m->frames);
+    free(m->records);
+    free(m->splits);
+    zt_arena_free(&m->arena);
+    free(m);
     *slot = NULL;
 }
 
-/* The place of the first frame that is not before this one. */
-static size_t place_of(const zt_manifest *m, int64_t frame) {
-    size_t low = 0, high = m->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (m->frames[middle].frame < frame)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
+/* ---- asking ---------------------------------------------------------------------------------
+ */
 
-static zt_status make_room(zt_manifest *m) {
-    if (m->count < m->capacity) return ZT_OK;
-    size_t capacity = m->capacity ? 2 * m->capacity : 64;
-    zt_manifest_frame *frames = reallocarray(m->frames, capacity, sizeof *frames);
-    if (!frames) return ZT_EMEMORY;
-    m->frames = frames;
-    m->capacity = capacity;
-    return ZT_OK;
-}
-
-zt_status zt_manifest_add(zt_manifest *m, const zt_manifest_frame *frame) {
-    size_t place = place_of(m, frame->frame);
-    if (place == m->count || m->frames[place].frame != frame->frame) {
-        ZT_TRY(make_room(m));
-        memmove(m->frames + place + 1, m->frames + place,
-                (m->count - place) * sizeof *m->frames);
-        m->count++;
-    }
-    m->frames[place] = *frame;
-    return ZT_OK;
+static int by_frame(const void *a, const void *b) {
+    const zt_manifest_frame *one = a, *other = b;
+    return (one->frame > other->frame) - (one->frame < other->frame);
 }
 
 const zt_manifest_frame *zt_manifest_find(const zt_manifest *m, int64_t frame) {
-    size_t place = place_of(m, frame);
-    return place < m->count && m->frames[place].frame == frame ? &m->frames[place] : NULL;
+    const zt_manifest_frame wanted = {.frame = frame};
+    if (m->frame_count == 0) return NULL;
+    return bsearch(&wanted, m->frames, m->frame_count, sizeof wanted, by_frame);
+}
+
+const zt_manifest_split *zt_manifest_split_of(const zt_manifest *m, zt_hash of, int64_t count) {
+    for (size_t i = 0; i < m->split_count; i++) {
+        const zt_manifest_split *s = &m->splits[i];
+        if (s->of.high == of.high && s->of.low == of.low && s->count == count) return s;
+    }
+    return NULL;
+}
+
+double zt_manifest_time(const zt_manifest *m, int64_t frame) {
+    const zt_manifest_frame *found = zt_manifest_find(m, frame);
+    return found ? found->render_s : -1;
+}
+
+bool zt_manifest_key(zt_hash *key, const zt_manifest *m, int64_t frame) {
+    const zt_manifest_frame *found = zt_manifest_find(m, frame);
+    if (!found || !(found->key.high || found->key.low)) return false;
+    *key = found->key;
+    return true;
 }
 
 void zt_manifest_range(int64_t *first, int64_t *last, const zt_manifest *m) {
     *first = m->frames[0].frame;
-    *last = m->frames[m->count - 1].frame;
+    *last = m->frames[m->frame_count - 1].frame;
 }
 
 void zt_manifest_settings(zt_render_settings *settings, const zt_manifest *m) {
@@ -91,186 +70,190 @@ void zt_manifest_settings(zt_render_settings *settings, const zt_manifest *m) {
     if (settings->precision == ZT_PRECISION_AUTO) settings->precision = m->precision;
 }
 
-/* ---- writing --------------------------------------------------------------------------------
+/* ---- adding ---------------------------------------------------------------------------------
  */
 
-static void print_frame(FILE *file, const zt_manifest_frame *f) {
-    fprintf(file, "    {\"frame\": %" PRId64 ", ", f->frame);
-    if (f->min == f->max) {
-        fprintf(file, "\"samples\": %" PRId32 "}", f->max);
-        return;
+/* Room for one more of a list. */
+static zt_status make_room(void *list, size_t *room, size_t count, size_t size) {
+    void **items = list;
+    if (count < *room) return ZT_OK;
+    size_t more = *room ? 2 * *room : 16;
+    void *larger = reallocarray(*items, more, size);
+    if (!larger) return ZT_EMEMORY;
+    *items = larger;
+    *room = more;
+    return ZT_OK;
+}
+
+#define ADD(m, name, item)                                                                     \
+    ZT_TRY(                                                                                    \
+        make_room(&(m)->name##s, &(m)->name##_room, (m)->name##_count, sizeof *(m)->name##s)); \
+    (m)->name##s[(m)->name##_count++] = (item)
+
+/* Samples that were chosen for other pixels say nothing any more. */
+static zt_status add_header(zt_manifest *m, const zt_manifest_line *l, const char *text) {
+    bool other = m->width != l->width || m->height != l->height || m->precision != l->precision;
+    for (size_t i = 0; other && i < m->frame_count; i++)
+        m->frames[i].min = m->frames[i].max = 0;
+    m->width = l->width;
+    m->height = l->height;
+    m->precision = l->precision;
+    free(m->header);
+    m->header = zt_text_print("%.*s\n", (int)strcspn(text, "\r\n"), text);
+    return m->header ? ZT_OK : ZT_EMEMORY;
+}
+
+static zt_status add_line(zt_manifest *m, const zt_manifest_line *l, const char *text) {
+    m->line_count++;
+    if (l->kind == ZT_LINE_HEADER) return add_header(m, l, text);
+    if (l->kind == ZT_LINE_FRAME) {
+        ADD(m, frame, l->frame);
     }
-    fprintf(file, "\"min\": %" PRId32 ", \"max\": %" PRId32 ", \"error\": ", f->min, f->max);
-    zt_json_print_number(file, f->error);
-    if (f->mean_max > 0) fprintf(file, ", \"mean_max\": %" PRId32, f->mean_max);
-    putc('}', file);
-}
-
-static bool print(FILE *file, const zt_manifest *m, const char *description) {
-    fputs("{\n  \"zoetrope\": 1,\n  \"description\": ", file);
-    zt_json_print_text(file, description);
-    fprintf(file, ",\n  \"size\": [%d, %d],\n  \"precision\": \"%s\",\n  \"frames\": [\n",
-            m->width, m->height, precisions[m->precision]);
-    for (size_t i = 0; i < m->count; i++) {
-        print_frame(file, &m->frames[i]);
-        fputs(i + 1 < m->count ? ",\n" : "\n", file);
+    if (l->kind == ZT_LINE_SPLIT) {
+        ADD(m, split, l->split);
     }
-    fputs("  ]\n}\n", file);
-    return fflush(file) == 0 && !ferror(file);
+    if (l->record.count > 0) {
+        ADD(m, record, l->record);
+    }
+    return ZT_OK;
 }
 
-static zt_status write_file(const zt_manifest *m, const char *path, const char *description) {
-    FILE *file = fopen(path, "w");
-    if (!file) return ZT_EFILE;
-    bool good = print(file, m, description);
-    int why = errno;
-    if (fclose(file) != 0 && good) return ZT_EFILE;
-    errno = why;
-    return good ? ZT_OK : ZT_EFILE;
+static int by_thing(const void *a, const void *b) {
+    const zt_output_record *one = a, *other = b;
+    if (one->kind != other->kind) return one->kind < other->kind ? -1 : 1;
+    return (one->first > other->first) - (one->first < other->first);
 }
 
-zt_status zt_manifest_write(const zt_manifest *m, const char *path, const char *description,
-                            zt_listener listener) {
-    zt_aside aside;
-    ZT_TRY(zt_aside_open(&aside, path, listener));
-    zt_status status = write_file(m, aside.path, description);
-    if (status == ZT_OK) return zt_aside_keep(&aside, listener);
-    zt_tell(listener, ZT_ERROR, "cannot write %s: %s", path, strerror(errno));
-    zt_aside_drop(&aside);
+typedef int comparison(const void *, const void *);
+
+/* Of equal things, those that came later are behind. */
+static int by_order(const void *a, const void *b, void *user) {
+    const void *one = *(const void *const *)a, *other = *(const void *const *)b;
+    int order = (*(comparison **)user)(one, other);
+    return order ? order : (one > other) - (one < other);
+}
+
+/* Sorts a list, and leaves of equal ones that which came last. */
+static zt_status leave_last(void *list, size_t *count, size_t size, comparison *order) {
+    char *items = list;
+    void **sorted = malloc((*count + 1) * sizeof *sorted);
+    char *left = malloc(*count * size + 1), *end = left;
+    if (sorted && left) {
+        for (size_t i = 0; i < *count; i++) sorted[i] = items + i * size;
+        qsort_r(sorted, *count, sizeof *sorted, by_order, &order);
+        for (size_t i = 0; i < *count; i++)
+            if (i + 1 == *count || order(sorted[i], sorted[i + 1]) != 0) {
+                memcpy(end, sorted[i], size);
+                end += size;
+            }
+        *count = (size_t)(end - left) / size;
+        if (*count) memcpy(items, left, *count * size);
+    }
+    zt_status status = sorted && left ? ZT_OK : ZT_EMEMORY;
+    free(sorted);
+    free(left);
     return status;
+}
+
+static zt_status sort(zt_manifest *m) {
+    ZT_TRY(leave_last(m->frames, &m->frame_count, sizeof *m->frames, by_frame));
+    return leave_last(m->records, &m->record_count, sizeof *m->records, by_thing);
 }
 
 /* ---- reading --------------------------------------------------------------------------------
  */
 
-static zt_status read_precision(zt_manifest *m, zt_json *json) {
-    char text[16];
-    ZT_TRY(zt_json_text(json, text, sizeof text));
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(text, precisions[i]) != 0) continue;
-        m->precision = (zt_precision)i;
-        return ZT_OK;
-    }
-    return zt_json_refuse(json, "\"precision\" must be \"auto\", \"single\" or \"double\"");
+typedef struct reading {
+    zt_manifest *manifest;
+    const char *path;
+    zt_listener listener;
+    bool strict;
+    int line_number, wrong_count, first_wrong;
+} reading;
+
+/* Whether a line that cannot be read ends too early, as those do whose writer was killed. */
+static bool is_cut(const zt_json *json) {
+    const char *rest = json->at + strspn(json->at, "+-.0123456789abcdefABCDEFu\\");
+    return rest[strspn(rest, " \r\n")] == '\0';
 }
 
-static zt_status read_size(zt_manifest *m, zt_json *json) {
-    int64_t width, height;
-    ZT_TRY(zt_json_mark(json, '['));
-    ZT_TRY(zt_json_integer(json, &width, 1, ZT_IMAGE_SIDE_MAX));
-    ZT_TRY(zt_json_mark(json, ','));
-    ZT_TRY(zt_json_integer(json, &height, 1, ZT_IMAGE_SIDE_MAX));
-    ZT_TRY(zt_json_mark(json, ']'));
-    m->width = (int)width;
-    m->height = (int)height;
+static zt_status read_line(reading *r, const char *text, bool tells, bool *cut) {
+    zt_json json;
+    zt_manifest_line line;
+    zt_manifest *m = r->manifest;
+    ZT_TRY(zt_json_open_text(&json, text, r->path, tells ? r->listener : (zt_listener){0}));
+    json.lines_before = r->line_number - 1;
+    zt_status status = zt_manifest_parse(&line, &json, &m->arena);
+    *cut = status == ZT_EFILE && is_cut(&json);
+    if (status == ZT_OK && r->strict && !m->header && line.kind != ZT_LINE_HEADER)
+        status = zt_json_refuse(&json, "a manifest begins with its header");
+    zt_json_close(&json);
+    return status == ZT_OK && !tells ? add_line(m, &line, text) : status;
+}
+
+static zt_status take_line(reading *r, char *text, size_t length) {
+    bool cut;
+    r->line_number++;
+    for (size_t i = 0; i < length; i++)
+        if (!text[i]) text[i] = 1; /* which is no JSON */
+    if (text[strspn(text, " \t\r\n")] == '\0') return ZT_OK;
+    zt_status status = read_line(r, text, false, &cut);
+    if (status != ZT_EFILE || (cut && (r->manifest->header || !r->strict)))
+        return status == ZT_EFILE ? ZT_OK : status;
+    if (r->strict) return read_line(r, text, true, &cut);
+    if (r->wrong_count++ == 0) r->first_wrong = r->line_number;
     return ZT_OK;
 }
 
-/* What has been read of a frame, a bit for each key. */
-enum {
-    HAS_FRAME = 1,
-    HAS_SAMPLES = 2,
-    HAS_MIN = 4,
-    HAS_MAX = 8,
-    HAS_ERROR = 16,
-    HAS_MEAN = 32
-};
-
-static zt_status read_frame_field(zt_manifest_frame *f, unsigned *has, zt_json *json) {
-    static const char *const keys[] = {"frame", "samples",  "min", "max",
-                                       "error", "mean_max", NULL};
-    int64_t number = 0;
-    int key;
-    ZT_TRY(zt_json_key(json, &key, keys));
-    if (*has & 1u << key) return zt_json_refuse(json, "\"%s\" is there twice", keys[key]);
-    *has |= 1u << key;
-    if (1 << key == HAS_ERROR) return zt_json_number(json, &f->error, 0, 1);
-    if (1 << key == HAS_FRAME) return zt_json_integer(json, &f->frame, 0, frame_max);
-    ZT_TRY(zt_json_integer(json, &number, 1, SAMPLES_MAX));
-    if (1 << key == HAS_MEAN) {
-        f->mean_max = (int32_t)number;
-        return ZT_OK;
-    }
-    if (1 << key != HAS_MAX) f->min = (int32_t)number;
-    if (1 << key != HAS_MIN) f->max = (int32_t)number;
-    return ZT_OK;
+static zt_status refuse(const reading *r, const char *why) {
+    zt_tell(r->listener, ZT_ERROR, "cannot read %s: %s", r->path, why);
+    return ZT_EFILE;
 }
 
-static zt_status read_frame(zt_manifest *m, zt_json *json) {
-    zt_manifest_frame f = {0};
-    unsigned has = 0;
-    bool more;
-    ZT_TRY(zt_json_mark(json, '{'));
-    do {
-        ZT_TRY(read_frame_field(&f, &has, json));
-        ZT_TRY(zt_json_more(json, &more, '}'));
-    } while (more);
-    if (has != (HAS_FRAME | HAS_SAMPLES) &&
-        (has & ~(unsigned)HAS_MEAN) != (HAS_FRAME | HAS_MIN | HAS_MAX | HAS_ERROR))
-        return zt_json_refuse(json, "a frame has \"frame\" and either \"samples\" or \"min\", "
-                                    "\"max\" and \"error\"");
-    if (f.min > f.max) return zt_json_refuse(json, "\"max\" is below \"min\"");
-    if (m->count > 0 && f.frame <= m->frames[m->count - 1].frame)
-        return zt_json_refuse(json, "frame %" PRId64 " comes after frame %" PRId64, f.frame,
-                              m->frames[m->count - 1].frame);
-    return zt_manifest_add(m, &f);
+static zt_status read_lines(reading *r, FILE *file) {
+    struct stat there;
+    if (fstat(fileno(file), &there) != 0) return refuse(r, strerror(errno));
+    if (there.st_size > size_max) return refuse(r, strerror(EFBIG));
+    char *line = NULL;
+    size_t room = 0;
+    zt_status status = ZT_OK;
+    for (ssize_t length; status == ZT_OK && (length = getline(&line, &room, file)) > 0;)
+        status = take_line(r, line, (size_t)length);
+    if (status == ZT_OK && ferror(file)) status = refuse(r, strerror(errno));
+    free(line);
+    return status;
 }
 
-static zt_status read_frames(zt_manifest *m, zt_json *json) {
-    bool more;
-    ZT_TRY(zt_json_mark(json, '['));
-    do {
-        ZT_TRY(read_frame(m, json));
-        ZT_TRY(zt_json_more(json, &more, ']'));
-    } while (more);
-    return ZT_OK;
+static zt_status read_file(reading *r) {
+    FILE *file = fopen(r->path, "rb");
+    if (!file) return !r->strict && errno == ENOENT ? ZT_OK : refuse(r, strerror(errno));
+    zt_status status = read_lines(r, file);
+    fclose(file);
+    if (status == ZT_OK) status = sort(r->manifest);
+    return status;
 }
 
-enum { KEY_VERSION, KEY_DESCRIPTION, KEY_SIZE, KEY_PRECISION, KEY_FRAMES, KEY_COUNT };
-
-static zt_status read_field(zt_manifest *m, int key, zt_json *json) {
-    int64_t version;
-    switch (key) {
-    case KEY_VERSION:
-        return zt_json_integer(json, &version, 1, 1);
-    case KEY_DESCRIPTION:
-        return zt_json_text(json, NULL, 0);
-    case KEY_SIZE:
-        return read_size(m, json);
-    case KEY_PRECISION:
-        return read_precision(m, json);
-    default:
-        return read_frames(m, json);
-    }
-}
-
-static zt_status read_all(zt_manifest *m, zt_json *json) {
-    static const char *const keys[] = {"zoetrope",  "description", "size",
-                                       "precision", "frames",      NULL};
-    unsigned has = 0;
-    bool more;
-    ZT_TRY(zt_json_mark(json, '{'));
-    do {
-        int key;
-        ZT_TRY(zt_json_key(json, &key, keys));
-        if (has & 1u << key) return zt_json_refuse(json, "\"%s\" is there twice", keys[key]);
-        has |= 1u << key;
-        ZT_TRY(read_field(m, key, json));
-        ZT_TRY(zt_json_more(json, &more, '}'));
-    } while (more);
-    for (int key = 0; key < KEY_COUNT; key++)
-        if (!(has & 1u << key)) return zt_json_refuse(json, "\"%s\" is missing", keys[key]);
-    return zt_json_end(json);
+static zt_status read_manifest(zt_manifest **out, reading *r) {
+    *out = r->manifest = calloc(1, sizeof **out);
+    if (!*out) return ZT_EMEMORY;
+    zt_status status = read_file(r);
+    if (status == ZT_OK && r->strict && r->manifest->frame_count == 0)
+        status = refuse(r, "it has no frames");
+    if (status != ZT_OK) zt_manifest_free(out);
+    return status;
 }
 
 zt_status zt_manifest_read(zt_manifest **out, const char *path, zt_listener listener) {
-    zt_json json;
-    *out = NULL;
-    ZT_TRY(zt_json_open(&json, path, listener));
-    zt_manifest *m = zt_manifest_create(0, 0, ZT_PRECISION_AUTO);
-    zt_status status = m ? read_all(m, &json) : ZT_EMEMORY;
-    zt_json_close(&json);
-    if (status != ZT_OK) zt_manifest_free(&m);
-    *out = m;
-    return status;
+    return read_manifest(out, &(reading){.path = path, .listener = listener, .strict = true});
+}
+
+zt_status zt_manifest_recall(zt_manifest **out, const char *path, zt_listener listener) {
+    reading r = {.path = path, .listener = listener};
+    ZT_TRY(read_manifest(out, &r));
+    if (r.wrong_count > 0)
+        zt_tell(listener, ZT_WARNING,
+                "%s: %d lines, the first of them line %d, cannot be read: what they told of is "
+                "made again",
+                path, r.wrong_count, r.first_wrong);
+    return ZT_OK;
 }

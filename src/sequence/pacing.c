@@ -8,16 +8,12 @@
 #include "sequence/manifest.h"
 
 void zt_pacing_free(zt_pacing **slot) {
-    if (*slot) zt_manifest_free(&(*slot)->manifest);
+    if (*slot) free((int64_t *)(*slot)->plan.frames);
     free(*slot);
     *slot = NULL;
 }
 
 void zt_renderer_follow(zt_renderer *r, const zt_manifest *manifest) { r->followed = manifest; }
-
-const zt_manifest *zt_renderer_manifest(const zt_renderer *r) {
-    return r->pacing ? r->pacing->manifest : NULL;
-}
 
 static zt_status follow(zt_sampling *sampling, const zt_renderer *r, int64_t frame) {
     const zt_manifest_frame *found = zt_manifest_find(r->followed, frame);
@@ -25,6 +21,7 @@ static zt_status follow(zt_sampling *sampling, const zt_renderer *r, int64_t fra
         zt_tell(r->listener, ZT_ERROR, "the manifest has no frame %" PRId64, frame);
         return ZT_EARGUMENT;
     }
+    if (found->max == 0) return ZT_OK; /* it had those of its settings */
     sampling->min = found->min;
     sampling->max = found->max;
     sampling->error = found->error;
@@ -40,16 +37,10 @@ zt_status zt_pacing_sampling(zt_sampling *sampling, const zt_renderer *r, int64_
     return ZT_OK;
 }
 
-zt_status zt_pacing_done(zt_renderer *r, int64_t frame, const zt_sampling *sampling,
-                         double took_s) {
+void zt_pacing_done(zt_renderer *r, int64_t frame, double took_s) {
     zt_pacing *p = r->pacing;
-    if (!p || r->followed) return ZT_OK;
-    zt_manifest_frame done = {frame, sampling->min, sampling->max, sampling->error,
-                              sampling->mean_max};
-    ZT_TRY(zt_manifest_add(p->manifest, &done));
-    if (frame == p->next && frame <= p->plan.last) {
-        zt_plan_done(&p->plan, frame, took_s, zt_clock_s() - p->begun_s);
-        p->next++;
-    }
-    return ZT_OK;
+    if (!p || r->followed || p->next == p->plan.frame_count || p->plan.frames[p->next] != frame)
+        return;
+    zt_plan_done(&p->plan, frame, took_s, zt_clock_s() - p->begun_s);
+    p->next++;
 }

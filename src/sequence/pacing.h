@@ -8,18 +8,16 @@
 
 /* A budget that is being spent. */
 struct zt_pacing {
-    zt_plan plan;
+    zt_plan plan; /* its frames are its own */
     double begun_s; /* by the clock */
-    int64_t next;   /* the frame that has its turn */
-    zt_manifest *manifest;
+    int64_t next;   /* the position of the frame that has its turn */
 };
 
 /* ZT_EARGUMENT, told, where the manifest that is followed has no such frame. */
 zt_status zt_pacing_sampling(zt_sampling *sampling, const zt_renderer *renderer, int64_t frame);
 
-/* A frame has been rendered so, in so many seconds: notes it down where there is a budget. */
-zt_status zt_pacing_done(zt_renderer *renderer, int64_t frame, const zt_sampling *sampling,
-                         double took_s);
+/* A frame has been rendered, in so many seconds: tells a budget. */
+void zt_pacing_done(zt_renderer *renderer, int64_t frame, double took_s);
 
 void zt_pacing_free(zt_pacing **pacing);
 

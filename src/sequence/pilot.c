@@ -67,13 +67,12 @@ static zt_status look(pilot *p, int64_t frame) {
 
 /* Frame number `index` of `count` that are spread evenly over the film. */
 static int64_t spread_frame(const zt_plan *plan, int index, int count) {
-    int64_t way = plan->last - plan->first;
-    return count == 1 ? plan->first + way / 2 : plan->first + way * index / (count - 1);
+    int64_t last = plan->frame_count - 1;
+    return plan->frames[count == 1 ? last / 2 : last * index / (count - 1)];
 }
 
 static int most_frames(const zt_plan *plan) {
-    int64_t count = plan->last - plan->first + 1;
-    return count < ZT_COSTS_MAX ? (int)count : ZT_COSTS_MAX;
+    return plan->frame_count < ZT_COSTS_MAX ? (int)plan->frame_count : ZT_COSTS_MAX;
 }
 
 /* ---- as many samples in each pixel ----------------------------------------------------------
@@ -312,7 +311,7 @@ static zt_status make_images(pilot *p, const zt_output_format *format) {
 }
 
 zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher) {
-    double frame_count = (double)(plan->last - plan->first + 1);
+    double frame_count = (double)plan->frame_count;
     double all_s =
         plan->budget.film_s > 0 ? plan->budget.film_s : plan->budget.frame_s * frame_count;
     pilot p = {.plan = plan, .renderer = r, .left_s = PILOT_SHARE * all_s};
