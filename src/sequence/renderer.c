@@ -139,15 +139,15 @@ static zt_status find_matrices(zt_renderer *r, const zt_taking *t, int64_t frame
 }
 
 /* What motion is between, where the image asks for it. */
-static zt_status prepare_passage(zt_passage *passage, zt_renderer *r, const zt_image *image,
-                                 const zt_taking *t, int64_t frame) {
+static zt_status prepare_passage(zt_taking *t, zt_renderer *r, const zt_image *image,
+                                 int64_t frame) {
     if (!zt_image_channel(image, "motion.x") && !zt_image_channel(image, "motion.y"))
         return ZT_OK;
     zt_scene *scenes = ZT_PUSH(&r->frame, zt_scene, 2);
     if (!scenes) return ZT_EMEMORY;
     for (int i = 0; i < 2; i++)
         ZT_TRY(zt_shutter_middle(&scenes[i], r->animation, frame + i, &r->frame, r->listener));
-    return zt_passage_prepare(passage, &scenes[0], &scenes[1],
+    return zt_passage_prepare(&t->passage, &scenes[0], &scenes[1],
                               t->exposure.moments[0].camera.position, &r->frame);
 }
 
@@ -156,18 +156,17 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     if (image->width != r->format.width || image->height != r->format.height)
         return ZT_EARGUMENT;
     zt_taking t;
-    zt_passage passage;
     zt_render_count count;
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_doubt(r, &t.ready, &t.exposure, &t.division, frame);
     ZT_TRY(find_matrices(r, &t, frame));
-    ZT_TRY(prepare_passage(&passage, r, image, &t, frame));
+    ZT_TRY(prepare_passage(&t, r, image, frame));
     t.job.reuse = reuse;
     t.job.stopped = watcher ? watcher->stopped : NULL;
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();
     ZT_TRY(zt_render(image, &count, &t.job, r->work, r->pool));
-    ZT_TRY(zt_guides_render(image, &t.job, &t.exposure, &passage, r->work, r->pool));
+    ZT_TRY(zt_guides_render(image, &t.job, &t.exposure, &t.passage, r->work, r->pool));
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = count.left_out;
     r->cost.rays = count.rays;

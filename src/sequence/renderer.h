@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "base/pool.h"
 #include "render/render.h"
+#include "scene/passage.h"
 #include "sequence/shutter.h"
 #include "tracer/meshes.h"
 
@@ -51,6 +52,7 @@ typedef struct zt_taking {
     zt_division division;
     zt_ready ready;
     zt_lens *lens;
+    zt_passage passage; /* to the next frame, where motion is asked for */
     zt_render_job job;
 } zt_taking;
 

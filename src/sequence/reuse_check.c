@@ -51,7 +51,8 @@ zt_status zt_reuse_check(zt_renderer *r, const zt_taking *taking, int64_t frame,
         status = zt_image_add_channel(other, image->channels[i].name);
     if (status == ZT_OK) status = zt_render(other, &count, &job, r->work, r->pool);
     if (status == ZT_OK)
-        status = zt_guides_render(other, &job, &taking->exposure, r->work, r->pool);
+        status = zt_guides_render(other, &job, &taking->exposure, &taking->passage, r->work,
+                                  r->pool);
     if (status == ZT_OK) status = compare(r, frame, image, other);
     zt_image_free(&other);
     return status;
