@@ -15,6 +15,7 @@
 #define FINISHED                                                                               \
     (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
      BIT(MANIFEST))
+#define REUSE (BIT(NO_REUSE) | BIT(CHECK_REUSE))
 
 static const char images[] =
     "  film.mp4         a movie, H.264; also .mov .mkv, .webm (VP9), .gif, .apng\n"
@@ -30,13 +31,13 @@ static const char reports[] =
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
-                           images, FINISHED | BIT(FRAMES) | BIT(CHUNK)},
+                           images, FINISHED | BIT(FRAMES) | BIT(CHUNK) | REUSE},
     [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
                           "output/NAME.NNNN.png", images, FINISHED | BIT(PIXEL) | BIT(SAMPLE)},
     [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
                             "A quick movie: a quarter of the size, one sample a pixel",
                             "output/NAME.preview.mp4", images,
-                            ONE_FRAME | BIT(FRAMES) | BIT(CHUNK)},
+                            ONE_FRAME | BIT(FRAMES) | BIT(CHUNK) | REUSE},
     [ZT_COMMAND_CHECK] = {"check", "FILE", 1, 0,
                           "Tells mistakes, what is probably not meant, what FILE holds", NULL,
                           NULL, ANYWHERE},
@@ -94,6 +95,10 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                            "instead of one a core; the images stay the same"},
     [ZT_OPTION_PRECISION] = {"precision", 0, "double",
                              "or single, of all rays, instead of what each frame asks for"},
+    [ZT_OPTION_NO_REUSE] = {"no-reuse", 0, NULL,
+                            "copy nothing from the frame before, where it stays the same"},
+    [ZT_OPTION_CHECK_REUSE] = {"check-reuse", 0, NULL,
+                               "render frames both ways, and fail where a bit differs"},
     [ZT_OPTION_CODEC] = {"codec", 0, "h265",
                          "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1", true},
     [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale",

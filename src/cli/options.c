@@ -205,7 +205,8 @@ static bool fit_together(const char *const *values, zt_report *report) {
                                              {ZT_OPTION_TIME_PER_FRAME, ZT_OPTION_PIXEL},
                                              {ZT_OPTION_MANIFEST, ZT_OPTION_SAMPLES},
                                              {ZT_OPTION_PIXEL, ZT_OPTION_OUTPUT},
-                                             {ZT_OPTION_PIXEL, ZT_OPTION_PRESET}};
+                                             {ZT_OPTION_PIXEL, ZT_OPTION_PRESET},
+                                             {ZT_OPTION_NO_REUSE, ZT_OPTION_CHECK_REUSE}};
     for (size_t i = 0; i < sizeof exclusive / sizeof *exclusive; i++) {
         zt_option a = exclusive[i][0], b = exclusive[i][1];
         if (!values[a] || !values[b]) continue;
@@ -267,6 +268,8 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     options->manifest = values[ZT_OPTION_MANIFEST];
     options->frame_list = values[ZT_OPTION_FRAME];
     options->overwrites = values[ZT_OPTION_OVERWRITE] != NULL;
+    settings->no_reuse = values[ZT_OPTION_NO_REUSE] != NULL;
+    settings->check_reuse = values[ZT_OPTION_CHECK_REUSE] != NULL;
     options->replays = values[ZT_OPTION_PIXEL] != NULL;
     options->rate = (zt_rate){24, 1};
     options->filters = values[ZT_OPTION_FILTERS] != NULL;
