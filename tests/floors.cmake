@@ -34,11 +34,13 @@ set(header_output encode)
 set(header_drawing encode)
 set(header_precision tracer)
 set(header_renderer sequence)
+set(header_diff sequence)
 set(header_film sequence)
 set(header_frames sequence)
 set(header_ladder sequence)
 set(header_manifest sequence)
 set(header_replay sequence)
+set(header_reproduce sequence)
 set(header_zoetrope cli)
 
 # Each foreign header, by the beginning of its name, and its one door: a pattern, where that has

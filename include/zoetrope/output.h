@@ -61,6 +61,10 @@ typedef struct zt_output_format {
     int64_t frame_count; /* how many will come; 0 where that is not known */
     const zt_output_plan
         *plan; /* NULL: frames come as they do, and what is there is replaced */
+    /* What the film says of itself in files that have place for it; NULL: nothing. Not needed
+     * once the output is open. */
+    const char *settings;    /* as in zt_image_info, but for what is each frame's own */
+    const char *description; /* the name of its file */
 } zt_output_format;
 
 /* A wish for how an output is written. All know, and leave out where they cannot hold it,

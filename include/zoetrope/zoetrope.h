@@ -7,6 +7,7 @@
 
 #include <zoetrope/animation.h>
 #include <zoetrope/aov.h>
+#include <zoetrope/diff.h>
 #include <zoetrope/drawing.h>
 #include <zoetrope/explain.h>
 #include <zoetrope/film.h>
@@ -19,6 +20,7 @@
 #include <zoetrope/rate.h>
 #include <zoetrope/renderer.h>
 #include <zoetrope/replay.h>
+#include <zoetrope/reproduce.h>
 #include <zoetrope/status.h>
 
 #define ZT_VERSION "0.1.0"

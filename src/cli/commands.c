@@ -59,6 +59,14 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                            "Images that are there, frames.####.exr, become a movie: -o TARGET",
                            NULL, NULL,
                            (ANYWHERE & ~BIT(SET)) | MOVIE | BIT(OUTPUT) | BIT(RATE)},
+    [ZT_COMMAND_DIFF] = {"diff", "OLD NEW", 2, 0,
+                         "Tells which frames change, because of what, and how long they take",
+                         NULL, NULL,
+                         ANYWHERE | BIT(OUTPUT) | BIT(SIZE) | BIT(SAMPLES) | BIT(THREADS) |
+                             BIT(PRECISION)},
+    [ZT_COMMAND_REPRODUCE] = {"reproduce", "IMAGE [FILE]", 1, 1,
+                              "Renders the frame of an .exr, .png or .tif again, and compares",
+                              NULL, NULL, (ANYWHERE & ~BIT(SET)) | BIT(THREADS)},
 };
 
 const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {

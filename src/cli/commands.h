@@ -16,6 +16,8 @@ typedef enum zt_command {
     ZT_COMMAND_CURVES,
     ZT_COMMAND_REPORT,
     ZT_COMMAND_ENCODE,
+    ZT_COMMAND_DIFF,
+    ZT_COMMAND_REPRODUCE,
     ZT_COMMAND_COUNT /* none of them */
 } zt_command;
 

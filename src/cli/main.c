@@ -12,6 +12,7 @@
 #include <zoetrope/zoetrope.h>
 
 #include "cli/curves.h"
+#include "cli/diff.h"
 #include "cli/encode.h"
 #include "cli/errors.h"
 #include "cli/explain.h"
@@ -19,8 +20,15 @@
 #include "cli/progress.h"
 #include "cli/replay.h"
 #include "cli/report.h"
+#include "cli/reproduce.h"
 
-enum { EXIT_MISTAKES = 1, EXIT_USAGE = 2, EXIT_REFUSED = 3, EXIT_INTERRUPTED = 130 };
+enum {
+    EXIT_MISTAKES = 1,
+    EXIT_DIFFERENT = 1,
+    EXIT_USAGE = 2,
+    EXIT_REFUSED = 3,
+    EXIT_INTERRUPTED = 130
+};
 
 /* Set by a signal; read by the rendering threads. */
 static atomic_bool stop_asked;
@@ -241,6 +249,26 @@ static int exit_code(zt_status status, zt_report *report) {
     }
 }
 
+/* Whatever needs the animation of a description. */
+static zt_status of_film(zt_options *options, zt_report *report) {
+    zt_animation *animation = NULL;
+    zt_manifest *manifest = NULL;
+    zt_status status = read_manifest(&manifest, options, report);
+    if (status == ZT_OK)
+        status = zt_animation_read(&animation, options->file, options->sets, options->set_count,
+                                   zt_report_listener(report));
+    if (status == ZT_OK) status = run(options, manifest, animation, report);
+    zt_manifest_free(&manifest);
+    zt_animation_free(&animation);
+    return status;
+}
+
+static int reproduce(const zt_options *options, zt_report *report) {
+    bool differs;
+    zt_status status = zt_reproduce_image(&differs, options, stopped, report);
+    return status == ZT_OK && differs ? EXIT_DIFFERENT : exit_code(status, report);
+}
+
 int main(int argc, char **argv) {
     hold_standard_streams();
     zt_report report = zt_report_create();
@@ -254,18 +282,17 @@ int main(int argc, char **argv) {
         break;
     }
     report.quiet = options.quiet;
-    if (options.command == ZT_COMMAND_ENCODE) {
+    switch (options.command) {
+    case ZT_COMMAND_ENCODE:
         listen_for_interrupts();
         return exit_code(zt_encode(&options, stopped, &report), &report);
+    case ZT_COMMAND_DIFF:
+        listen_for_interrupts();
+        return exit_code(zt_diff_films(&options, stopped, &report), &report);
+    case ZT_COMMAND_REPRODUCE:
+        listen_for_interrupts();
+        return reproduce(&options, &report);
+    default:
+        return exit_code(of_film(&options, &report), &report);
     }
-    zt_animation *animation = NULL;
-    zt_manifest *manifest = NULL;
-    zt_status status = read_manifest(&manifest, &options, &report);
-    if (status == ZT_OK)
-        status = zt_animation_read(&animation, options.file, options.sets, options.set_count,
-                                   zt_report_listener(&report));
-    if (status == ZT_OK) status = run(&options, manifest, animation, &report);
-    zt_manifest_free(&manifest);
-    zt_animation_free(&animation);
-    return exit_code(status, &report);
 }

@@ -189,6 +189,8 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         return false;
     }
     if (options->command == ZT_COMMAND_EXPLAIN) options->question = sorted->words[2];
+    if (options->command == ZT_COMMAND_DIFF || options->command == ZT_COMMAND_REPRODUCE)
+        options->other = sorted->words[2];
     options->properties = (const char *const *)sorted->words + 2;
     options->property_count = sorted->word_count - 2;
     return true;

@@ -14,7 +14,10 @@ enum { ZT_SETS_MAX = 256, ZT_OUTPUT_OPTIONS_MAX = 64 };
 
 typedef struct zt_options {
     zt_command command;
-    const char *file;              /* the description */
+    const char *file;              /* the description; of diff the older one, of reproduce and
+                                      encode images */
+    const char *other;             /* of diff the newer one, of reproduce the description, which
+                                      may be NULL */
     const char *target;            /* NULL: the command's own */
     const char *question;          /* of explain: "ball.center@37"; NULL: precisions */
     const char *frame_list;        /* as zt_frames_read takes it, not yet read; or NULL */

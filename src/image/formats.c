@@ -165,3 +165,17 @@ zt_status zt_image_wish(zt_image_wishes *w, const char *name, const zt_wish *opt
     ZT_TRY(wish_tile(w, value_of(options, "tile"), listener));
     return wish_parts(w, value_of(options, "parts"), listener);
 }
+
+char *zt_image_wishes_text(const zt_image_wishes *w) {
+    char text[LIST_MAX];
+    int length = snprintf(text, sizeof text, "bits=%s", depth_names[w->depth]);
+    const zt_compression *c = w->compression;
+    if (c)
+        length +=
+            snprintf(text + length, sizeof text - (size_t)length,
+                     c->highest ? ",compression=%s:%d" : ",compression=%s", c->name, w->level);
+    if (w->tile)
+        length += snprintf(text + length, sizeof text - (size_t)length, ",tile=%d", w->tile);
+    if (w->parts) snprintf(text + length, sizeof text - (size_t)length, ",parts=layers");
+    return strdup(text);
+}

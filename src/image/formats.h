@@ -61,6 +61,10 @@ extern const char *const zt_image_file_options[];
 zt_status zt_image_wish(zt_image_wishes *wishes, const char *name, const zt_wish *options,
                         zt_listener listener);
 
+/* All of it as options, "bits=half,compression=zip:4,tile=64", so that it says the same
+ * wherever something else is the usual one. Of the caller to free; NULL when out of memory. */
+char *zt_image_wishes_text(const zt_image_wishes *wishes);
+
 #ifdef __cplusplus
 }
 #endif

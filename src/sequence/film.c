@@ -107,6 +107,7 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
                                     .seed = r->sampling.seed,
                                     .title = m->order->title,
                                     .description = m->order->description,
+                                    .view = zt_view_name(r->format.view),
                                     .settings = m->settings.text};
     memcpy(m->last->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
     memcpy(m->last->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
@@ -280,6 +281,8 @@ static zt_status make_into_output(making *m) {
                                  .user = m};
     m->planned = m->remembers && !m->timed;
     format.frame_count = m->frames.count;
+    format.description = m->order->description;
+    ZT_TRY(zt_settings_of_film(&format.settings, m->renderer, m->order, &m->settings.arena));
     if (m->remembers) format.plan = &plan;
     ZT_TRY(find_keys(m));
     if (m->planned && m->still)

@@ -9,6 +9,7 @@
 
 #include "base/diag.h"
 #include "base/text.h"
+#include "image/formats.h"
 #include "sequence/json.h"
 #include "sequence/pacing.h"
 
@@ -110,12 +111,8 @@ static void print(FILE *file, const zt_settings *s) {
     print_word(file, KEY_PRECISION, zt_precision_name(s->precision));
     print_word(file, KEY_VIEW, zt_view_name(s->view));
     print_aovs(file, s->aovs);
+    if (s->format) print_word(file, KEY_FORMAT, s->format);
     bool begun = false;
-    for (const zt_wish *o = s->options; o && o->name; o++)
-        if (zt_text_equal(o->name, "format-option"))
-            print_item(file, KEY_FORMAT, &begun, o->value);
-    print_end(file, begun);
-    begun = false;
     for (int i = 0; i < s->override_count; i++) {
         print_item(file, KEY_SET, &begun, s->overrides[i].name);
         print_item(file, KEY_SET, &begun, s->overrides[i].value);
@@ -142,23 +139,40 @@ static bool as_many(const zt_sampling *a, const zt_sampling *b) {
            a->mean_max == b->mean_max && a->edges == b->edges;
 }
 
+static zt_status print_of(const char **text, const zt_renderer *r, const zt_film_order *order,
+                          const zt_sampling *sampling, zt_arena *arena) {
+    char *format = NULL;
+    zt_image_wishes wishes;
+    if (zt_image_wish(&wishes, order->target, order->options, (zt_listener){0}) == ZT_OK &&
+        !(format = zt_image_wishes_text(&wishes)))
+        return ZT_EMEMORY;
+    const zt_settings settings = {.width = r->format.width,
+                                  .height = r->format.height,
+                                  .sampling = *sampling,
+                                  .precision = r->precision,
+                                  .aovs = r->aovs,
+                                  .view = r->format.view,
+                                  .format = format,
+                                  .overrides = order->overrides,
+                                  .override_count = order->override_count,
+                                  .arithmetic = zt_arithmetic};
+    zt_status status = zt_settings_print(text, &settings, arena);
+    free(format);
+    return status;
+}
+
+zt_status zt_settings_of_film(const char **text, const zt_renderer *r,
+                              const zt_film_order *order, zt_arena *arena) {
+    return print_of(text, r, order, &r->sampling, arena);
+}
+
 zt_status zt_settings_of_frame(zt_settings_texts *texts, const zt_renderer *r,
                                const zt_film_order *order, int64_t frame) {
     zt_sampling sampling;
     ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
     if (texts->text && as_many(&sampling, &texts->sampling)) return ZT_OK;
     texts->sampling = sampling;
-    const zt_settings settings = {.width = r->format.width,
-                                  .height = r->format.height,
-                                  .sampling = sampling,
-                                  .precision = r->precision,
-                                  .aovs = r->aovs,
-                                  .view = r->format.view,
-                                  .options = order->options,
-                                  .overrides = order->overrides,
-                                  .override_count = order->override_count,
-                                  .arithmetic = zt_arithmetic};
-    return zt_settings_print(&texts->text, &settings, &texts->arena);
+    return print_of(&texts->text, r, order, &sampling, &texts->arena);
 }
 
 /* ---- reading -------------------------------------------------------------------------------
@@ -237,17 +251,6 @@ static zt_status read_aovs(reading *r) {
     return ZT_OK;
 }
 
-static zt_status read_options(reading *r) {
-    const char **values;
-    int count;
-    ZT_TRY(read_list(&values, &count, r));
-    zt_wish *options = ZT_PUSH(r->arena, zt_wish, (size_t)count + 1);
-    if (!options) return ZT_EMEMORY;
-    for (int i = 0; i < count; i++) options[i] = (zt_wish){"format-option", values[i]};
-    r->s->options = options;
-    return ZT_OK;
-}
-
 static zt_status read_overrides(reading *r) {
     const char **texts;
     int count;
@@ -315,7 +318,7 @@ static zt_status read_field(reading *r, int key) {
     case KEY_AOVS:
         return read_aovs(r);
     case KEY_FORMAT:
-        return read_options(r);
+        return read_text(&r->s->format, r);
     case KEY_SET:
         return read_overrides(r);
     default:
@@ -355,4 +358,16 @@ zt_status zt_settings_read(zt_settings *settings, const char *text, const char *
     zt_status status = read_all(&r);
     zt_json_close(&r.json);
     return status;
+}
+
+zt_status zt_settings_options(const zt_wish **out, const zt_settings *settings,
+                              zt_arena *arena) {
+    const char *format = settings->format ? settings->format : "";
+    zt_wish *options = ZT_PUSH(arena, zt_wish, strlen(format) + 2);
+    char *rest = zt_arena_push_text(arena, format, strlen(format));
+    *out = options;
+    if (!options || !rest) return ZT_EMEMORY;
+    for (char *option; (option = strsep(&rest, ",")); options++)
+        if (*option) *options = (zt_wish){"format-option", option};
+    return ZT_OK;
 }

@@ -18,7 +18,7 @@ typedef struct zt_settings {
     zt_precision precision; /* as it was asked for */
     unsigned aovs;          /* bits of zt_aov */
     zt_view view;
-    const zt_wish *options; /* of the output; those called "format-option" count */
+    const char *format; /* of an image's file, as zt_image_wishes_text() has it; or NULL */
     const zt_override *overrides;
     int override_count;
     const char *arithmetic; /* its version */
@@ -28,11 +28,16 @@ typedef struct zt_settings {
  *
  *   {"zoetrope": 1, "arithmetic": "zoetrope 1", "size": [1280, 720], "min": 4, "max": 64,
  *    "error": 0.002, "filter": "gaussian", "filter_width": 2.00, "seed": 0, "precision":
- * "auto", "view": "srgb", "aovs": ["Z"], "format": ["bits=half"], "set": ["lamp.intensity",
+ * "auto", "view": "srgb", "aovs": ["Z"], "format": "bits=half", "set": ["lamp.intensity",
  * "40"]}
  *
  * "quality": "edges", "mean_max" and "seed_fixed" are there where they say something. */
 zt_status zt_settings_print(const char **text, const zt_settings *settings, zt_arena *arena);
+
+/* The text of a film as a whole, in the arena: samples are those that frames take where nothing
+ * else decides. */
+zt_status zt_settings_of_film(const char **text, const zt_renderer *renderer,
+                              const zt_film_order *order, zt_arena *arena);
 
 /* The texts of a film's frames, which stay until the arena is freed. Zeroed: none yet. */
 typedef struct zt_settings_texts {
@@ -44,6 +49,12 @@ typedef struct zt_settings_texts {
 /* Makes texts->text that of a frame; of frames that take the same samples it is one. */
 zt_status zt_settings_of_frame(zt_settings_texts *texts, const zt_renderer *renderer,
                                const zt_film_order *order, int64_t frame);
+
+/* The options of an output that it came from; they end with one without a name, and are in the
+ * arena.
+ */
+zt_status zt_settings_options(const zt_wish **options, const zt_settings *settings,
+                              zt_arena *arena);
 
 /* Reads such a text; what it holds is in the arena. `path` is the file that it is from, for
  * messages. ZT_EFILE, told, where it is no such thing. */

@@ -50,8 +50,7 @@ typedef struct opening {
     const zt_glance *step_from, *step_to; /* which is between these */
 } opening;
 
-/* The time of a moment, in seconds. */
-static double time_of(const zt_animation *animation, int64_t frame, double cell) {
+double zt_shutter_time(const zt_animation *animation, int64_t frame, double cell) {
     const zt_film *film = &animation->film;
     const zt_shutter *shutter = &film->shutter;
     double share = shutter->open + cell / ZT_TIME_CELLS * (shutter->close - shutter->open);
@@ -60,7 +59,8 @@ static double time_of(const zt_animation *animation, int64_t frame, double cell)
 
 static zt_status look_again(zt_glance *look, opening *o, double cell) {
     look->cell = cell;
-    return zt_glance_at(look, &o->chords, time_of(o->animation, o->frame, cell), o->listener);
+    return zt_glance_at(look, &o->chords, zt_shutter_time(o->animation, o->frame, cell),
+                        o->listener);
 }
 
 static zt_status look_at(zt_glance **out, opening *o, double cell) {
@@ -180,8 +180,8 @@ static zt_status begin(opening *o) {
     o->moments[o->moment_count++] = (zt_glance *)o->first;
     ZT_TRY(look_at(&last, o, ZT_TIME_CELLS));
     o->pending[o->pending_count++] = last;
-    int count = zt_kinks(cells, looks, animation, time_of(animation, o->frame, 0),
-                         time_of(animation, o->frame, ZT_TIME_CELLS));
+    int count = zt_kinks(cells, looks, animation, zt_shutter_time(animation, o->frame, 0),
+                         zt_shutter_time(animation, o->frame, ZT_TIME_CELLS));
     while (count-- > 0) ZT_TRY(look_at(&o->pending[o->pending_count++], o, cells[count]));
     if (o->pending_count > 1) return ZT_OK;
     int tests = looks < FIRST_TESTS_MOST ? looks : FIRST_TESTS_MOST;
@@ -320,7 +320,7 @@ zt_status zt_shutter_middle(zt_scene *scene, const zt_animation *animation, int6
                             zt_arena *arena, zt_listener listener) {
     const zt_shutter *shutter = &animation->film.shutter;
     double cell = shutter->close > shutter->open ? ZT_TIME_CELLS / 2 : 0;
-    return zt_animation_freeze(scene, animation, time_of(animation, frame, cell), arena,
+    return zt_animation_freeze(scene, animation, zt_shutter_time(animation, frame, cell), arena,
                                listener);
 }
 
@@ -336,7 +336,7 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
                             const zt_animation *animation, int64_t frame, int height,
                             zt_arena *arena, zt_listener listener) {
     const zt_shutter *shutter = &animation->film.shutter;
-    double open_s = time_of(animation, frame, 0);
+    double open_s = zt_shutter_time(animation, frame, 0);
     *division = (zt_division){.moment_count = 1, .stepping = -1};
     if (shutter->close <= shutter->open || animation->track_count == 0)
         return expose_moment(exposure, animation, open_s, arena, listener);

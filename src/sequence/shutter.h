@@ -38,6 +38,10 @@ zt_status zt_shutter_expose(zt_exposure *exposure, zt_division *division,
 zt_status zt_shutter_middle(zt_scene *scene, const zt_animation *animation, int64_t frame,
                             zt_arena *arena, zt_listener listener);
 
+/* The time of a moment of a frame's opening, in seconds: 0 is its begin, ZT_TIME_CELLS its end.
+ */
+double zt_shutter_time(const zt_animation *animation, int64_t frame, double cell);
+
 /* What the random numbers of a frame are keyed by: the places of samples in their pixels by the
  * seed and the camera, all others by the seed and all of the exposure, so that noise changes
  * from frame to frame, but frames in which nothing changes come out identical. */
