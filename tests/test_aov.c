@@ -116,7 +116,7 @@ typedef struct stage {
 typedef struct seen {
     int object, material;
     double depth;
-    vec3 place, normal;
+    vec3 place, normal, color;
 } seen;
 
 static seen look(const stage *s, int x, int y) {
@@ -130,13 +130,13 @@ static seen look(const stage *s, int x, int y) {
     if (root > 0) {
         double t = (-b - sqrt(root)) / a;
         vec3 p = vec3_add(o, vec3_scale(d, t));
-        return (seen){3, 3, t, vec3_add(p, s->at), p};
+        return (seen){3, 3, t, vec3_add(p, s->at), p, {1, 1, 1}};
     }
     double t = o.z + 3;
     vec3 p = vec3_add(o, vec3_scale(d, t));
     if (fabs(p.x - 4) < 0.01) return (seen){.object = -1};
     if (p.x > 4) return (seen){.depth = INFINITY};
-    return (seen){2, 2, t, vec3_add(p, s->at), {0, 0, 1}};
+    return (seen){2, 2, t, vec3_add(p, s->at), {0, 0, 1}, {1, 0, 0}};
 }
 
 /* `size` is that of the numbers in the world. */
@@ -157,6 +157,8 @@ static void check(const zt_image *image, const stage *s, double size) {
                              e.object ? size : 0, "P", x, y);
             assert_vec3_near(values(image, "N.X", "N.Y", "N.Z", x, y), e.normal,
                              e.object ? 4 : 0, "N", x, y);
+            assert_vec3_near(values(image, "albedo.R", "albedo.G", "albedo.B", x, y), e.color,
+                             0, "albedo", x, y);
         }
     }
     /* There was something to see of each. */
@@ -239,6 +241,42 @@ static void moving_ball(void **state) {
     zt_image_free(&image);
 }
 
+/* Of patterns the color of the cell, of models that of their corners, whatever lights them: a
+ * wall of cells 2 long before which a triangle stands. Nothing is lit. */
+static void own_colors(void **state) {
+    (void)state;
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                              "property float y\nproperty float z\nproperty float red\n"
+                              "property float green\nproperty float blue\nelement face 1\n"
+                              "property list uchar int vertex_indices\nend_header\n"
+                              "0 0 0 1 0 0\n20 0 0 0 1 0\n0 20 0 0 0 1\n3 0 1 2\n";
+    static const char text[] =
+        "zoetrope: 1\nfilm: { duration: 1 }\n"
+        "camera: { lens: orthographic, height: 34, position: [0.2, 0.3, 9],\n"
+        "          rotation: [0, 0, 0] }\n"
+        "objects:\n"
+        "  - plane: { normal: [0, 0, 1], distance: -1, material: { pattern: checker,\n"
+        "             color: [0.5, 0.25, 1], other_color: [0, 0.125, 0], pattern_size: 2 } }\n"
+        "  - mesh: { file: colors.ply, material: { color: [0.5, 1, 1] } }\n";
+    write_bytes("colors.ply", ply, sizeof ply - 1);
+    zt_image *image = taken(text, 0, ZT_AOV_ALBEDO, 2);
+    int counts[3] = {0};
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) {
+            double right = x + 0.5 - WIDTH / 2.0 + 0.2, up = HEIGHT / 2.0 - y - 0.5 + 0.3;
+            bool on = right > 0 && up > 0 && right + up < 20;
+            bool odd = (int)(floor(right / 2) + floor(up / 2) - 1) % 2 != 0;
+            vec3 cell = odd ? (vec3){0, 0.125, 0} : (vec3){0.5, 0.25, 1};
+            vec3 mixed = {0.5 * (1 - (right + up) / 20), right / 20, up / 20};
+            counts[on ? 2 : odd]++;
+            assert_vec3_near(values(image, "albedo.R", "albedo.G", "albedo.B", x, y),
+                             on ? mixed : cell, 1, "albedo", x, y);
+        }
+    }
+    assert_true(counts[0] > 100 && counts[1] > 100 && counts[2] > 100);
+    zt_image_free(&image);
+}
+
 /* The colours have the same bits with channels and without, and all has with one thread and
  * with two; for even samples, and where some pixels take more. */
 static void same_bits(void **state) {
@@ -298,6 +336,7 @@ int main(void) {
         cmocka_unit_test(names),         cmocka_unit_test(channels),
         cmocka_unit_test(description),   cmocka_unit_test(against_closed_forms),
         cmocka_unit_test(moving_camera), cmocka_unit_test(moving_ball),
-        cmocka_unit_test(same_bits),     cmocka_unit_test(stopped)};
+        cmocka_unit_test(own_colors),    cmocka_unit_test(same_bits),
+        cmocka_unit_test(stopped)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
