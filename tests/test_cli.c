@@ -34,72 +34,97 @@ static void help_and_version(void **state) {
     assert_contains(r->err, "Usage: zoetrope");
 }
 
-/* Each misuse is told in a sentence that helps on, ends with 2, and leaves nothing behind. */
-static void misuse(void **state) {
-    (void)state;
-    const struct {
-        const char *arguments, *told;
-    } cases[] = {
-        {"rendr film.yaml", "did you mean render?"},
-        {"film.yaml", "did you mean render film.yaml?"},
-        {"paint film.yaml", "unknown command paint"},
-        {"render film.yaml --sise=4x4", "did you mean --size?"},
-        {"render film.yaml --sam 4", "did you mean --samples?"},
-        {"render film.yaml -x", "unknown option -x"},
-        {"render", "render needs FILE"},
-        {"frame film.yaml", "frame needs FILE N"},
-        {"frame film.yaml x", "x is not the number of a frame"},
-        {"frame film.yaml 1x", "1x is not the number of a frame"},
-        {"frame film.yaml 6", "no frame 6: the film has frames 0 to 5"},
-        {"frame film.yaml 99999999999999999999", "is not the number of a frame"},
-        {"render film.yaml other.yaml", "one word too many: other.yaml"},
-        {"render film.yaml -- --quiet", "one word too many: --quiet"},
-        {"check film.yaml --size=4x4", "check takes no --size"},
-        {"frame film.yaml 1 --frames 1-2", "frame takes no --frames"},
-        {"render film.yaml --quiet=yes", "--quiet takes no value"},
-        {"render film.yaml -o", "--output needs a value"},
-        {"render film.yaml --output=", "--output needs a value"},
-        {"render film.yaml --size 640", "--size 640: must be"},
-        {"render film.yaml --size 0x4", "--size 0x4: must be"},
-        {"render film.yaml --size 4x4x4", "--size 4x4x4: must be"},
-        {"render film.yaml --size 65537x4", "65536"},
-        {"render film.yaml --threads 0", "--threads 0: must be a number from 1"},
-        {"render film.yaml --samples -4", "--samples -4: must be a number from 1"},
-        {"render film.yaml --samples 4.5", "--samples 4.5: must be a number from 1"},
-        {"render film.yaml --samples 4-64", "--samples 4-64 needs --error"},
-        {"render film.yaml --samples 64-4 --error 0.1", "--samples 64-4: must be a number"},
-        {"preview film.yaml --quality edges", "preview takes no --quality"},
-        {"explain film.yaml --frames 3-2", "--frames 3-2: must be"},
-        {"explain film.yaml --frames 3-", "--frames 3-: must be"},
-        {"explain film.yaml --frames -3", "--frames -3: must be"},
-        {"render film.yaml --frames 3-", "frames 3-: at \"\": a frame's number belongs here"},
-        {"render film.yaml --frames 0,7", "there is no frame 7: the film has frames 0 to 5"},
-        {"render film.yaml --chunk 0/3", "--chunk 0/3: must be a part"},
-        {"render film.yaml --chunk 4/3", "--chunk 4/3: must be a part"},
-        {"render film.yaml --chunk 3", "--chunk 3: must be a part"},
-        {"check film.yaml --overwrite", "check takes no --overwrite"},
-        {"render film.yaml --frames 4-6", "no frame 6: the film has frames 0 to 5"},
-        {"render film.yaml --size 33x18 -o film.mp4", "33"},
-        {"render film.yaml --preset quick -o film.mp4", "ultrafast superfast veryfast faster"},
-        {"preview film.yaml --preset 3", "no preset \"3\""},
-        {"render film.yaml --preset fast -o film.hash", "no option \"preset\" for checksums"},
-        {"frame film.yaml 1 --preset fast", "no option \"preset\" for images"},
-        {"check film.yaml --preset fast", "check takes no --preset"},
-        {"render film.yaml --precision half",
-         "--precision half: must be single, double or auto"},
-        {"check film.yaml --precision single", "check takes no --precision"},
-        {"explain film.yaml --precision double", "explain takes no --precision"},
-        {"explain film.yaml ball.center@1 ball", "one word too many: ball"},
-        {"explain film.yaml ball.center@1 --frames 1", "--frames or a property, not both"},
-        {"explain film.yaml --frames 6", "no frame 6: the film has frames 0 to 5"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        run *r = zoetrope(cases[i].arguments);
-        if (r->code != 2) fail_msg("zoetrope %s ended with %d", cases[i].arguments, r->code);
-        assert_contains(r->err, cases[i].told);
+/* Arguments that cannot be, what is told of them, and how that ends. */
+typedef struct refusal {
+    const char *arguments, *told;
+    int code;
+} refusal;
+
+/* Each of them is refused so, with an error and nothing on standard output. */
+static void assert_refused(const refusal *cases, size_t count) {
+    for (const refusal *c = cases; c < cases + count; c++) {
+        run *r = zoetrope(c->arguments);
+        if (r->code != c->code)
+            fail_msg("zoetrope %s ended with %d: %s", c->arguments, r->code, r->err);
+        assert_contains(r->err, c->told);
         assert_contains(r->err, "zoetrope: error: ");
         assert_string_equal(r->out, "");
     }
+}
+
+/* Each misuse is told in a sentence that helps on, ends with 2, and leaves nothing behind. */
+static void misuse(void **state) {
+    (void)state;
+    static const refusal cases[] = {
+        {"rendr film.yaml", "did you mean render?", 2},
+        {"film.yaml", "did you mean render film.yaml?", 2},
+        {"paint film.yaml", "unknown command paint", 2},
+        {"render film.yaml --sise=4x4", "did you mean --size?", 2},
+        {"render film.yaml --sam 4", "did you mean --samples?", 2},
+        {"render film.yaml -x", "unknown option -x", 2},
+        {"render", "render needs FILE", 2},
+        {"frame film.yaml", "frame needs FILE N", 2},
+        {"frame film.yaml x", "x is not the number of a frame", 2},
+        {"frame film.yaml 1x", "1x is not the number of a frame", 2},
+        {"frame film.yaml 6", "no frame 6: the film has frames 0 to 5", 2},
+        {"frame film.yaml 99999999999999999999", "is not the number of a frame", 2},
+        {"render film.yaml other.yaml", "one word too many: other.yaml", 2},
+        {"render film.yaml -- --quiet", "one word too many: --quiet", 2},
+        {"check film.yaml --size=4x4", "check takes no --size", 2},
+        {"frame film.yaml 1 --frames 1-2", "frame takes no --frames", 2},
+        {"render film.yaml --quiet=yes", "--quiet takes no value", 2},
+        {"render film.yaml -o", "--output needs a value", 2},
+        {"render film.yaml --output=", "--output needs a value", 2},
+        {"render film.yaml --size 640", "--size 640: must be", 2},
+        {"render film.yaml --size 0x4", "--size 0x4: must be", 2},
+        {"render film.yaml --size 4x4x4", "--size 4x4x4: must be", 2},
+        {"render film.yaml --size 65537x4", "65536", 2},
+        {"render film.yaml --threads 0", "--threads 0: must be a number from 1", 2},
+        {"render film.yaml --samples -4", "--samples -4: must be a number from 1", 2},
+        {"render film.yaml --samples 4.5", "--samples 4.5: must be a number from 1", 2},
+        {"render film.yaml --samples 4-64", "--samples 4-64 needs --error", 2},
+        {"render film.yaml --samples 64-4 --error 0.1", "--samples 64-4: must be a number", 2},
+        {"preview film.yaml --quality edges", "preview takes no --quality", 2},
+        {"explain film.yaml --frames 3-2", "--frames 3-2: must be", 2},
+        {"explain film.yaml --frames 3-", "--frames 3-: must be", 2},
+        {"explain film.yaml --frames -3", "--frames -3: must be", 2},
+        {"render film.yaml --frames 3-", "frames 3-: at \"\": a frame's number belongs here",
+         2},
+        {"render film.yaml --frames 0,7", "there is no frame 7: the film has frames 0 to 5", 2},
+        {"render film.yaml --chunk 0/3", "--chunk 0/3: must be a part", 2},
+        {"render film.yaml --chunk 4/3", "--chunk 4/3: must be a part", 2},
+        {"render film.yaml --chunk 3", "--chunk 3: must be a part", 2},
+        {"check film.yaml --overwrite", "check takes no --overwrite", 2},
+        {"render film.yaml --frames 4-6", "no frame 6: the film has frames 0 to 5", 2},
+        {"render film.yaml --size 33x18 -o film.mp4", "33", 2},
+        {"render film.yaml --preset quick -o film.mp4", "ultrafast superfast veryfast faster",
+         2},
+        {"preview film.yaml --preset 3", "no preset \"3\"", 2},
+        {"render film.yaml --preset fast -o film.hash", "no option \"preset\" for checksums",
+         2},
+        {"frame film.yaml 1 --preset fast", "no option \"preset\" for images", 2},
+        {"check film.yaml --preset fast", "check takes no --preset", 2},
+        {"render film.yaml --precision half",
+         "--precision half: must be single, double or auto", 2},
+        {"check film.yaml --precision single", "check takes no --precision", 2},
+        {"explain film.yaml --precision double", "explain takes no --precision", 2},
+        {"explain film.yaml ball.center@1 ball", "one word too many: ball", 2},
+        {"explain film.yaml ball.center@1 --frames 1", "--frames or a property, not both", 2},
+        {"explain film.yaml --frames 6", "no frame 6: the film has frames 0 to 5", 2},
+        {"render film.yaml --aovs Z,q", "--aovs Z,q: there is no \"q\"; there are Z, P, N", 2},
+        {"render film.yaml --aovs Z,", "--aovs Z,: there is no \"\"; there are Z, P, N", 2},
+        {"preview film.yaml --aovs Z", "preview takes no --aovs", 2},
+        {"render film.yaml --view blue", "--view blue: there are raw, srgb", 2},
+        {"check film.yaml --view srgb", "check takes no --view", 2},
+        {"render film.yaml --verify 0", "--verify 0: must be a number from 1", 2},
+        {"frame film.yaml 1 --verify 1", "frame takes no --verify", 2},
+        {"diff film.yaml", "diff needs OLD NEW", 2},
+        {"diff film.yaml film.yaml --frames 1", "diff takes no --frames", 2},
+        {"reproduce", "reproduce needs IMAGE", 2},
+        {"reproduce a.exr film.yaml b", "one word too many: b", 2},
+        {"reproduce a.exr --set a=1", "reproduce takes no --set", 2},
+    };
+    assert_refused(cases, sizeof cases / sizeof *cases);
     assert_int_equal(entry_count("."), 1); /* film.yaml alone */
 }
 
@@ -168,7 +193,7 @@ static const char *line_of(char line[256], const char *text, int n) {
     return line;
 }
 
-/* Float images, encoded, are the movie that rendering itself writes, byte for byte; from any
+/* Images of light, encoded, are the movie that rendering itself writes, byte for byte; from any
  * number on, whatever else the directory holds. */
 static void encode(void **state) {
     (void)state;
@@ -181,13 +206,13 @@ static void encode(void **state) {
     const char *patterns[] = {"####", "@@@@", "%04d"};
     for (int i = 0; i < 3; i++) {
         char arguments[128];
-        snprintf(arguments, sizeof arguments, "encode shots/film.%s.exr --rate 6 -o again.mp4",
+        snprintf(arguments, sizeof arguments, "encode shots/film.%s.exr --overwrite",
                  patterns[i]);
         run *r = zoetrope(arguments);
         assert_int_equal(r->code, 0);
-        assert_contains(r->err, "again.mp4: 6 frames");
+        assert_contains(r->err, "output/film.mp4: 6 frames");
         assert_null(strstr(r->err, "missing"));
-        assert_true(same_files("film.mp4", "again.mp4"));
+        assert_true(same_files("film.mp4", "output/film.mp4"));
     }
     zoetrope_succeeds("encode shots/film.####.exr --rate 30000/1001 -o ntsc.mp4");
     assert_false(same_files("film.mp4", "ntsc.mp4"));
@@ -203,6 +228,26 @@ static void encode(void **state) {
     read_text(text, "gaps.hash");
     assert_contains(line_of(line, text, 4), "12346");
     assert_string_equal(line_of(line, text, 5), "");
+}
+
+/* Light is shown as its film shows it, or as is asked for: both are what rendering makes of it.
+ * What is there already is not replaced unasked. */
+static void encode_view(void **state) {
+    (void)state;
+    zoetrope_succeeds("render film.yaml --frames 0-1 --view filmic -o filmic.mp4");
+    zoetrope_succeeds("render film.yaml --frames 0-1 --view filmic -o film.####.exr");
+    zoetrope_succeeds("encode film.####.exr -o again.mp4");
+    assert_true(same_files("filmic.mp4", "again.mp4"));
+    run *r = zoetrope("encode film.####.exr -o again.mp4 --view srgb");
+    assert_int_equal(r->code, 3);
+    assert_contains(r->err, "again.mp4 exists; with --overwrite it is replaced");
+    assert_true(same_files("filmic.mp4", "again.mp4"));
+    zoetrope_succeeds("encode film.####.exr --view srgb -o b.####.png");
+    zoetrope_succeeds("encode b.####.png -o b.hash");
+    zoetrope_succeeds("frame film.yaml 0 -o a.####.png");
+    zoetrope_succeeds("frame film.yaml 1 -o a.####.png");
+    zoetrope_succeeds("encode a.####.png -o a.hash");
+    assert_true(same_files("a.hash", "b.hash"));
 }
 
 /* Images for a display go as they are: numbers that are developed once more would differ. */
@@ -247,11 +292,9 @@ static void encode_alpha(void **state) {
 /* What cannot be encoded is told, and leaves nothing behind. */
 static void encode_refusals(void **state) {
     (void)state;
-    const struct {
-        const char *arguments, *told;
-        int code;
-    } cases[] = {
-        {"encode film.####.exr", "encode needs --output", 2},
+    static const refusal cases[] = {
+        {"encode film.####.exr", "there are no files film.####.exr", 3},
+        {"encode film.####.exr -o film.mp4 --view blue", "--view blue: there are raw", 2},
         {"encode film.exr -o film.mp4", "must have the place of one number", 2},
         {"encode film.##.##.exr -o film.mp4", "must have the place of one number", 2},
         {"encode film.%04x.exr -o film.mp4", "must have the place of one number", 2},
@@ -266,13 +309,8 @@ static void encode_refusals(void **state) {
         {"render film.yaml --rate 24", "render takes no --rate", 2},
     };
     write_text("bad.0001.exr", "not an image");
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        run *r = zoetrope(cases[i].arguments);
-        if (r->code != cases[i].code)
-            fail_msg("%s ended with %d: %s", cases[i].arguments, r->code, r->err);
-        assert_contains(r->err, cases[i].told);
-        assert_int_equal(access("film.mp4", F_OK), -1);
-    }
+    assert_refused(cases, sizeof cases / sizeof *cases);
+    assert_int_equal(entry_count("."), 2); /* film.yaml, and what is no image */
     zoetrope_succeeds("render film.yaml --frames 0 -o film.####.png");
     zoetrope_succeeds("render film.yaml --frames 1 --size 32x18 -o film.####.png");
     run *r = zoetrope("encode film.####.png -o film.hash");
@@ -393,6 +431,7 @@ int main(void) {
         IN_DIRECTORY(refusals),
         IN_DIRECTORY(check),
         IN_DIRECTORY(encode),
+        IN_DIRECTORY(encode_view),
         IN_DIRECTORY(encode_display),
         IN_DIRECTORY(encode_alpha),
         IN_DIRECTORY(encode_refusals),

@@ -29,6 +29,11 @@ typedef struct zt_origin {
 zt_status zt_origin_read(zt_origin **origin, const char *path, zt_listener listener);
 void zt_origin_free(zt_origin **origin);
 
+/* What a movie of an image that was read says of its settings: what the image does, but for how
+ * its own file is written, with this view. Of the caller to free; NULL where the image says
+ * nothing of them that can be read, or when out of memory. */
+char *zt_origin_settings(const zt_image *image, zt_view view);
+
 /* A number of a pixel that is not as it was. */
 typedef struct zt_deviation {
     int column, row;

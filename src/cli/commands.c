@@ -8,13 +8,13 @@
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
 #define MOVIE                                                                                  \
     (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
-     BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO))
+     BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO) | BIT(VIEW))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(OVERWRITE) | BIT(SIZE) | BIT(SAMPLES) |              \
      BIT(THREADS) | BIT(PRECISION))
 #define FINISHED                                                                               \
     (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
-     BIT(MANIFEST))
+     BIT(MANIFEST) | BIT(AOVS))
 #define REUSE (BIT(NO_REUSE) | BIT(CHECK_REUSE))
 
 static const char images[] =
@@ -31,7 +31,7 @@ static const char reports[] =
 const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_RENDER] = {"render", "FILE", 1, 0,
                            "All frames become a movie, or numbered images", "output/NAME.mp4",
-                           images, FINISHED | BIT(FRAMES) | BIT(CHUNK) | REUSE},
+                           images, FINISHED | BIT(FRAMES) | BIT(CHUNK) | BIT(VERIFY) | REUSE},
     [ZT_COMMAND_FRAME] = {"frame", "FILE N", 2, 0, "Frame N alone becomes an image",
                           "output/NAME.NNNN.png", images, FINISHED | BIT(PIXEL) | BIT(SAMPLE)},
     [ZT_COMMAND_PREVIEW] = {"preview", "FILE", 1, 0,
@@ -56,9 +56,10 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
                                BIT(FILTERS) | BIT(TIME_PER_FRAME) | BIT(THREADS) |
                                BIT(PRECISION)},
     [ZT_COMMAND_ENCODE] = {"encode", "FRAMES", 1, 0,
-                           "Images that are there, frames.####.exr, become a movie: -o TARGET",
-                           NULL, NULL,
-                           (ANYWHERE & ~BIT(SET)) | MOVIE | BIT(OUTPUT) | BIT(RATE)},
+                           "Images that are there, NAME.####.exr, become a movie",
+                           "output/NAME.mp4", images,
+                           (ANYWHERE & ~BIT(SET)) | MOVIE | BIT(OUTPUT) | BIT(OVERWRITE) |
+                               BIT(RATE)},
     [ZT_COMMAND_DIFF] = {"diff", "OLD NEW", 2, 0,
                          "Tells which frames change, because of what, and how long they take",
                          NULL, NULL,
@@ -78,7 +79,10 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                          "the frames to measure; the middle one by default"},
     [ZT_OPTION_CHUNK] = {"chunk", 0, "3/8", "of the frames, the third of eight equal parts"},
     [ZT_OPTION_OVERWRITE] = {"overwrite", 0, NULL, "render again what is there already"},
-    [ZT_OPTION_RATE] = {"rate", 0, "30000/1001", "frames a second; 24 by default"},
+    [ZT_OPTION_VERIFY] = {"verify", 0, "N",
+                          "of the images that are there already, render N again and compare"},
+    [ZT_OPTION_RATE] = {"rate", 0, "30000/1001",
+                        "frames a second, instead of what the images say, or 24"},
     [ZT_OPTION_SIZE] = {"size", 0, "640x360", "pixels, instead of the description's size"},
     [ZT_OPTION_SAMPLES] = {"samples", 0, "N",
                            "samples a pixel, instead of the description's; 4-64 with --error"},
@@ -107,6 +111,11 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                             "copy nothing from the frame before, where it stays the same"},
     [ZT_OPTION_CHECK_REUSE] = {"check-reuse", 0, NULL,
                                "render frames both ways, and fail where a bit differs"},
+    [ZT_OPTION_AOVS] = {"aovs", 0, "Z,N",
+                        "channels that .exr images have besides R G B A, or all"},
+    [ZT_OPTION_VIEW] = {"view", 0, "filmic",
+                        "or srgb, rec709, raw: how linear light is shown where it is for a "
+                        "display"},
     [ZT_OPTION_CODEC] = {"codec", 0, "h265",
                          "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1", true},
     [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale",

@@ -1,13 +1,12 @@
 #include "cli/encode.h"
 
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
+#include <unistd.h>
 
 #include "cli/progress.h"
 #include "cli/values.h"
@@ -18,7 +17,6 @@ typedef struct pictures {
     char *head;       /* "frames." */
     const char *tail; /* ".exr"; the options' own */
     int digits;       /* at least so many */
-    bool linear;      /* light; else numbers for a display */
     int64_t *numbers; /* rising */
     int64_t count, room;
 } pictures;
@@ -53,8 +51,6 @@ static zt_status read_pattern(pictures *p, const char *pattern, zt_report *repor
         return ZT_EARGUMENT;
     }
     p->tail = mark + length;
-    const char *dot = strrchr(p->tail, '.');
-    p->linear = dot && (strcasecmp(dot, ".exr") == 0 || strcasecmp(dot, ".hdr") == 0);
     p->directory = strndup(pattern, (size_t)(name - pattern));
     p->head = strndup(name, (size_t)(mark - name));
     return p->directory && p->head ? ZT_OK : ZT_EMEMORY;
@@ -141,28 +137,46 @@ static zt_status read_picture(zt_image **image, const pictures *p, int64_t numbe
         return ZT_EMEMORY;
     zt_status status = zt_image_read(image, path, zt_report_listener(report));
     free(path);
-    if (status == ZT_OK && !p->linear) multiply_by_alpha(*image);
+    if (status == ZT_OK && !(*image)->linear) multiply_by_alpha(*image);
     return status;
 }
 
-/* The movie's title is the images' name: "film" of "film.####.exr". */
-static zt_status open_movie(zt_output **output, const pictures *p, const zt_image *image,
-                            const zt_options *options, zt_report *report) {
-    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", NULL}};
+/* How linear light is shown: as was asked for, or as the film that the image is of has it. */
+static zt_view view_of(const zt_image *image, const zt_options *options) {
+    const char *name = options->view ? options->view : image->info.view;
+    for (int v = 0; name && v < ZT_VIEW_COUNT; v++)
+        if (strcmp(zt_view_name((zt_view)v), name) == 0) return (zt_view)v;
+    return ZT_VIEW_SRGB;
+}
+
+/* The movie says of itself what the images say of theirs; else its title is their name: "film"
+ * of "film.####.exr". Where they say nothing of a rate, there are 24 a second. */
+static zt_status open_movie(zt_output **output, const char *target, int64_t count,
+                            const zt_image *image, const zt_options *options,
+                            zt_report *report) {
+    const zt_image_info *info = &image->info;
+    zt_view view = image->linear ? view_of(image, options) : ZT_VIEW_RAW;
+    int length;
+    const char *name = zt_options_name(&length, options);
+    char *title = info->title ? strdup(info->title) : strndup(name, (size_t)length);
+    char *settings = zt_origin_settings(image, view);
+    if (!title) {
+        free(settings);
+        return ZT_EMEMORY;
+    }
     zt_output_format format = {.width = image->width,
                                .height = image->height,
-                               .rate = options->rate,
-                               .view = p->linear ? ZT_VIEW_SRGB : ZT_VIEW_RAW,
-                               .frame_count = p->count};
-    size_t length = strlen(p->head);
-    while (length > 0 && ispunct((unsigned char)p->head[length - 1])) length--;
-    char *title = strndup(p->head, length);
-    if (!title) return ZT_EMEMORY;
-    wishes[0].value = title;
-    memcpy(wishes + (length > 0 ? 1 : 0), options->output_options,
-           sizeof options->output_options);
+                               .rate = info->known ? info->rate : (zt_rate){24, 1},
+                               .view = view,
+                               .frame_count = count,
+                               .settings = settings,
+                               .description = info->description};
+    if (options->rate.num > 0) format.rate = options->rate;
+    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", title}};
+    memcpy(wishes + 1, options->output_options, sizeof options->output_options);
     zt_status status =
-        zt_output_open(output, options->target, &format, wishes, zt_report_listener(report));
+        zt_output_open(output, target, &format, wishes, zt_report_listener(report));
+    free(settings);
     free(title);
     return status;
 }
@@ -191,31 +205,44 @@ static zt_status write_pictures(zt_output *output, const pictures *p, zt_image *
     return ZT_OK;
 }
 
-static zt_status encode(const pictures *p, const zt_options *options,
-                        bool (*stopped)(void *user), zt_report *report) {
+static zt_status write_movie(const pictures *p, const char *target, const zt_options *options,
+                             bool (*stopped)(void *user), zt_report *report) {
     zt_image *image = NULL;
     zt_output *output = NULL;
     zt_status status = read_picture(&image, p, p->numbers[0], report);
-    if (status == ZT_OK) status = open_movie(&output, p, image, options, report);
+    if (status == ZT_OK) status = open_movie(&output, target, p->count, image, options, report);
     if (status == ZT_OK) {
         zt_progress progress = zt_progress_begin(report, p->count);
         status = write_pictures(output, p, &image, stopped, &progress);
         zt_status closed = zt_output_close(&output);
         if (closed != ZT_OK && status == ZT_OK) status = closed;
-        if (status == ZT_OK) zt_progress_end(&progress, options->target);
+        if (status == ZT_OK) zt_progress_end(&progress, target);
         if (status != ZT_OK && progress.done_count > 0)
             zt_report_say(report, ZT_WARNING,
-                          "%s has the first %" PRId64 " of %" PRId64 " images", options->target,
+                          "%s has the first %" PRId64 " of %" PRId64 " images", target,
                           progress.done_count, p->count);
     }
     zt_image_free(&image);
     return status;
 }
 
+/* A file that is there may have taken long to render. */
+static zt_status encode(const pictures *p, const char *target, const zt_options *options,
+                        bool (*stopped)(void *user), zt_report *report) {
+    if (!options->overwrites && access(target, F_OK) == 0) {
+        zt_report_say(report, ZT_ERROR, "%s exists; with --overwrite it is replaced", target);
+        return ZT_EFILE;
+    }
+    return write_movie(p, target, options, stopped, report);
+}
+
 zt_status zt_encode(const zt_options *options, bool (*stopped)(void *user), zt_report *report) {
     pictures p = {0};
     zt_status status = find_pictures(&p, options->file, report);
-    if (status == ZT_OK) status = encode(&p, options, stopped, report);
+    char *target = zt_options_target(options);
+    if (!target) status = ZT_EMEMORY;
+    if (status == ZT_OK) status = encode(&p, target, options, stopped, report);
+    free(target);
     free_pictures(&p);
     return status;
 }

@@ -131,6 +131,7 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                            .part = options->part,
                            .part_count = options->part_count,
                            .budget = options->budget,
+                           .verify = options->verify,
                            .overwrites = options->overwrites,
                            .forgets = options->command == ZT_COMMAND_FRAME,
                            .description = options->file,
@@ -143,6 +144,10 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
     if (result.kept > 0)
         zt_report_say(report, ZT_NOTE, "%" PRId64 " of %" PRId64 " frames were there already",
                       result.kept, result.count);
+    if (result.verified > 0)
+        zt_report_say(report, ZT_NOTE,
+                      "%" PRId64 " of them, rendered again, %s the same, bit for bit",
+                      result.verified, result.verified == 1 ? "is" : "are");
     if (status == ZT_OK && result.count > 0) zt_progress_end(&progress, target);
     if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
     return status;

@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 
 #include "cli/values.h"
 
-enum { THREADS_MAX = 1024 };
+enum { THREADS_MAX = 1024, VERIFY_MAX = 1000000 };
 
 /* The arguments, sorted but not yet understood. */
 typedef struct arguments {
@@ -178,10 +179,6 @@ static bool read_words(zt_options *options, const arguments *sorted, zt_report *
         return false;
     }
     options->file = sorted->words[1];
-    if (options->command == ZT_COMMAND_ENCODE && !options->target) {
-        zt_report_say(report, ZT_ERROR, "encode needs --output, such as --output=film.mp4");
-        return false;
-    }
     if (options->command == ZT_COMMAND_FRAME)
         return read_frame(options, sorted->words[2], report);
     if (options->command == ZT_COMMAND_EXPLAIN && sorted->words[2] && !options->all_frames) {
@@ -250,6 +247,15 @@ static bool set_sampling(zt_options *options, const char *const *values, zt_repo
     return !*text || add_set(options, "film.samples", text, report);
 }
 
+/* What is said of how light is shown stands in for the description's word, where there is one.
+ */
+static bool set_view(zt_options *options, const char *view, zt_report *report) {
+    options->view = view;
+    return !view ||
+           (zt_value_view(view, report) && (options->command == ZT_COMMAND_ENCODE ||
+                                            add_set(options, "film.view", view, report)));
+}
+
 static bool read_values(zt_options *options, const arguments *sorted, zt_report *report) {
     const zt_command_row *command = &zt_commands[options->command];
     const char *const *values = sorted->values;
@@ -263,7 +269,8 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
                *threads = values[ZT_OPTION_THREADS], *precision = values[ZT_OPTION_PRECISION],
                *time = values[ZT_OPTION_TIME], *frame_time = values[ZT_OPTION_TIME_PER_FRAME],
                *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE],
-               *chunk = values[ZT_OPTION_CHUNK], *rate = values[ZT_OPTION_RATE];
+               *chunk = values[ZT_OPTION_CHUNK], *rate = values[ZT_OPTION_RATE],
+               *verify = values[ZT_OPTION_VERIFY], *aovs = values[ZT_OPTION_AOVS];
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
@@ -273,7 +280,6 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     settings->no_reuse = values[ZT_OPTION_NO_REUSE] != NULL;
     settings->check_reuse = values[ZT_OPTION_CHECK_REUSE] != NULL;
     options->replays = values[ZT_OPTION_PIXEL] != NULL;
-    options->rate = (zt_rate){24, 1};
     options->filters = values[ZT_OPTION_FILTERS] != NULL;
     options->sample = -1;
     return fit_together(values, report) &&
@@ -285,6 +291,10 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
            (!sample || zt_value_sample(&options->sample, sample, report)) &&
            (!frames || read_frames(options, frames, report)) &&
            (!chunk || zt_value_part(&options->part, &options->part_count, chunk, report)) &&
+           (!verify ||
+            zt_value_count(&options->verify, ZT_OPTION_VERIFY, verify, VERIFY_MAX, report)) &&
+           (!aovs || zt_value_aovs(&settings->aovs, aovs, report)) &&
+           set_view(options, values[ZT_OPTION_VIEW], report) &&
            (!rate || zt_value_rate(&options->rate, rate, report)) &&
            (!size || zt_value_size(settings, size, report)) &&
            (!precision || zt_value_precision(settings, precision, report)) &&
@@ -327,7 +337,13 @@ const char *zt_options_name(int *length, const zt_options *options) {
     const char *slash = strrchr(options->file, '/');
     const char *name = slash ? slash + 1 : options->file;
     const char *dot = strrchr(name, '.');
-    *length = (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    size_t end = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    if (options->command == ZT_COMMAND_ENCODE) {
+        end = strcspn(name, "#@%");
+        while (end > 0 && ispunct((unsigned char)name[end - 1])) end--;
+        if (end == 0) end = strlen(name = "images");
+    }
+    *length = (int)end;
     return name;
 }
 

@@ -31,7 +31,9 @@ typedef struct zt_options {
     zt_render_settings settings; /* zero where not given */
     zt_budget budget;            /* likewise */
     const char *manifest;        /* to go by, or NULL */
-    zt_rate rate;                /* of encode */
+    int verify;                  /* how many of the images that are there; 0: none */
+    const char *view;            /* a zt_view's name, or NULL */
+    zt_rate rate;                /* of encode; zeros: as the images say */
     bool replays;                /* a pixel, instead of an image */
     int column, row;             /* of it */
     int sample;                  /* of it; -1: all */
@@ -55,7 +57,8 @@ typedef enum zt_request {
  */
 zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report *report);
 
-/* The description's name without its directory and ending; not terminated. */
+/* The description's name without its directory and ending, of encode that of the images without
+ * the place of their number; not terminated. */
 const char *zt_options_name(int *length, const zt_options *options);
 
 /* Where the images go: as told, or output/ and the description's name with an ending by the
@@ -63,7 +66,8 @@ const char *zt_options_name(int *length, const zt_options *options);
 char *zt_options_target(const zt_options *options);
 
 /* The frames that were asked for, in their order: the list, or first .. last, or all, of which
- * a part may be rendered. ZT_EARGUMENT after telling of frames that the film has not. The caller frees them. */
+ * a part may be rendered. ZT_EARGUMENT after telling of frames that the film has not. The
+ * caller frees them. */
 zt_status zt_options_frames(zt_frames *frames, const zt_options *options, const zt_film *film,
                             zt_report *report);
 

@@ -1,6 +1,7 @@
 /* Single values of options. */
 #include "cli/values.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,6 +53,34 @@ bool zt_value_precision(zt_render_settings *settings, const char *text, zt_repor
         return true;
     }
     zt_report_say(report, ZT_ERROR, "--precision %s: must be single, double or auto", text);
+    return false;
+}
+
+bool zt_value_aovs(unsigned *aovs, const char *text, zt_report *report) {
+    for (const char *name = text; name; name = strchr(name, ',')) {
+        char single[32];
+        unsigned found;
+        name += *name == ',';
+        snprintf(single, sizeof single, "%.*s", (int)strcspn(name, ","), name);
+        if (!zt_aov_find(&found, single)) {
+            zt_report_say(report, ZT_ERROR, "--aovs %s: there is no \"%s\"; there are %s", text,
+                          single, zt_aov_names());
+            return false;
+        }
+        *aovs |= found;
+    }
+    return true;
+}
+
+bool zt_value_view(const char *text, zt_report *report) {
+    char names[128] = "";
+    for (int v = 0; v < ZT_VIEW_COUNT; v++) {
+        const char *name = zt_view_name((zt_view)v);
+        size_t used = strlen(names);
+        if (strcmp(text, name) == 0) return true;
+        snprintf(names + used, sizeof names - used, "%s%s", v ? ", " : "", name);
+    }
+    zt_report_say(report, ZT_ERROR, "--view %s: there are %s", text, names);
     return false;
 }
 

@@ -30,6 +30,12 @@ bool zt_value_size(zt_render_settings *settings, const char *text, zt_report *re
 /* "double". */
 bool zt_value_precision(zt_render_settings *settings, const char *text, zt_report *report);
 
+/* "Z,N": bits of zt_aov. */
+bool zt_value_aovs(unsigned *aovs, const char *text, zt_report *report);
+
+/* "filmic". */
+bool zt_value_view(const char *text, zt_report *report);
+
 /* "2 s", "1.5 min": seconds. */
 bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_report *report);
 

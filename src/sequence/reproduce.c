@@ -61,6 +61,22 @@ void zt_origin_free(zt_origin **slot) {
     *slot = NULL;
 }
 
+char *zt_origin_settings(const zt_image *image, zt_view view) {
+    zt_arena arena = {0};
+    zt_settings settings;
+    const char *text = NULL;
+    char *own = NULL;
+    if (image->info.known && image->info.settings &&
+        zt_settings_read(&settings, image->info.settings, "", &arena, (zt_listener){0}) ==
+            ZT_OK) {
+        settings.format = NULL;
+        settings.view = view;
+        if (zt_settings_print(&text, &settings, &arena) == ZT_OK) own = strdup(text);
+    }
+    zt_arena_free(&arena);
+    return own;
+}
+
 /* ---- comparing -----------------------------------------------------------------------------
  */
 
