@@ -41,7 +41,7 @@ static inline zt_animation *animation_of(const char *text) {
 }
 
 /* The film of "film: { duration: 1 s, ... }". */
-static inline zt_film film_with(const char *words) {
+static inline zt_film film_of_words(const char *words) {
     char text[512];
     snprintf(text, sizeof text,
              "zoetrope: 1\nfilm: { duration: 1 s%s }\ncamera: { position: [0, 0, 5] }\n",

@@ -35,9 +35,9 @@ static zt_image *small(const char *text, int64_t frame, int threads, zt_precisio
 /* Opaque where nothing else is said. */
 static void description(void **state) {
     (void)state;
-    assert_false(film_with("").transparent);
-    assert_false(film_with(", background: opaque").transparent);
-    assert_true(film_with(", background: transparent").transparent);
+    assert_false(film_of_words("").transparent);
+    assert_false(film_of_words(", background: opaque").transparent);
+    assert_true(film_of_words(", background: transparent").transparent);
 }
 
 /* ---- colours that are multiplied ------------------------------------------------------------

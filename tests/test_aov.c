@@ -64,11 +64,11 @@ static void channels(void **state) {
 
 static void description(void **state) {
     (void)state;
-    assert_int_equal(film_with("").aovs, 0);
-    assert_int_equal(film_with(", aovs: []").aovs, 0);
-    assert_int_equal(film_with(", aovs: all").aovs, ZT_AOV_ALL);
-    assert_int_equal(film_with(", aovs: N").aovs, ZT_AOV_N);
-    assert_int_equal(film_with(", aovs: [id.object, Z, Z]").aovs, ZT_AOV_Z | ZT_AOV_OBJECT);
+    assert_int_equal(film_of_words("").aovs, 0);
+    assert_int_equal(film_of_words(", aovs: []").aovs, 0);
+    assert_int_equal(film_of_words(", aovs: all").aovs, ZT_AOV_ALL);
+    assert_int_equal(film_of_words(", aovs: N").aovs, ZT_AOV_N);
+    assert_int_equal(film_of_words(", aovs: [id.object, Z, Z]").aovs, ZT_AOV_Z | ZT_AOV_OBJECT);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------
@@ -257,7 +257,8 @@ static void own_colors(void **state) {
         "objects:\n"
         "  - plane: { normal: [0, 0, 1], distance: -1, material: { pattern: checker,\n"
         "             color: [0.5, 0.25, 1], other_color: [0, 0.125, 0], pattern_size: 2 } }\n"
-        "  - mesh: { file: colors.ply, material: { color: [0.5, 1, 1] } }\n";
+        "  - mesh: { file: colors.ply, vertex_colors: true, material: { color: [0.5, 1, 1] } "
+        "}\n";
     write_bytes("colors.ply", ply, sizeof ply - 1);
     zt_image *image = taken(text, 0, ZT_AOV_ALBEDO, 2);
     int counts[3] = {0};

@@ -14,11 +14,11 @@
 /* Each view by its name, and sRGB's where none is named. */
 static void views(void **state) {
     (void)state;
-    assert_int_equal(film_with("").view, ZT_VIEW_SRGB);
-    assert_int_equal(film_with(", view: raw").view, ZT_VIEW_RAW);
-    assert_int_equal(film_with(", view: srgb").view, ZT_VIEW_SRGB);
-    assert_int_equal(film_with(", view: rec709").view, ZT_VIEW_REC709);
-    assert_int_equal(film_with(", view: filmic").view, ZT_VIEW_FILMIC);
+    assert_int_equal(film_of_words("").view, ZT_VIEW_SRGB);
+    assert_int_equal(film_of_words(", view: raw").view, ZT_VIEW_RAW);
+    assert_int_equal(film_of_words(", view: srgb").view, ZT_VIEW_SRGB);
+    assert_int_equal(film_of_words(", view: rec709").view, ZT_VIEW_REC709);
+    assert_int_equal(film_of_words(", view: filmic").view, ZT_VIEW_FILMIC);
 }
 
 /* Shares of the time from one frame to the next: a turn is all of it. */
@@ -40,7 +40,7 @@ static void shutter(void **state) {
         {", shutter: { phase: -3600, angle: 3600 }", -10, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        zt_shutter s = film_with(cases[i].words).shutter;
+        zt_shutter s = film_of_words(cases[i].words).shutter;
         if (fabs(s.open - cases[i].open) > 1e-15 || fabs(s.close - cases[i].close) > 1e-15)
             fail_msg("%s: %.17g to %.17g", cases[i].words, s.open, s.close);
     }
@@ -72,7 +72,7 @@ static void samples(void **state) {
         {", samples: { min: 2, error: 0.01 }, quality: edges", 2, 64, 0.01, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        zt_sampling s = film_with(cases[i].words).sampling;
+        zt_sampling s = film_of_words(cases[i].words).sampling;
         if (s.min != cases[i].min || s.max != cases[i].max || s.error != cases[i].error ||
             s.edges != cases[i].edges)
             fail_msg("%s: %d to %d, %g", cases[i].words, s.min, s.max, s.error);
@@ -96,13 +96,13 @@ static void filters_and_seeds(void **state) {
         {", filter: { kind: gaussian, width: 2.5 }", ZT_FILTER_GAUSSIAN, 2.5},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        zt_sampling s = film_with(cases[i].words).sampling;
+        zt_sampling s = film_of_words(cases[i].words).sampling;
         assert_int_equal(s.filter, cases[i].filter);
         assert_true(s.filter_width == cases[i].width);
         assert_true(s.seed == 0 && !s.seed_fixed);
     }
-    zt_sampling plain = film_with(", seed: 4294967295").sampling,
-                fixed = film_with(", quality: edges, seed: fixed").sampling;
+    zt_sampling plain = film_of_words(", seed: 4294967295").sampling,
+                fixed = film_of_words(", quality: edges, seed: fixed").sampling;
     assert_true(plain.seed == UINT32_MAX && !plain.seed_fixed);
     assert_true(fixed.seed == 0 && fixed.seed_fixed);
 }
