@@ -21,8 +21,11 @@
 enum { CARD = 48, WIDTH = PATCH_COLUMNS * CARD, HEIGHT = PATCH_COUNT / PATCH_COLUMNS * CARD };
 enum { FRAME_COUNT = 10 };
 
-static const zt_output_format format = {WIDTH,        HEIGHT,      {24, 1},
-                                        ZT_VIEW_SRGB, FRAME_COUNT, NULL};
+static const zt_output_format format = {.width = WIDTH,
+                                        .height = HEIGHT,
+                                        .rate = {24, 1},
+                                        .view = ZT_VIEW_SRGB,
+                                        .frame_count = FRAME_COUNT};
 
 /* One way to write a movie, and what is to be found. */
 typedef struct way {
@@ -317,8 +320,10 @@ static void refusals(void **state) {
         char target[64];
         snprintf(target, sizeof target, "no/%s", cases[i].target);
         const zt_output_option options[] = {{cases[i].name, cases[i].value}, {NULL, NULL}};
-        zt_output_format wrong = {
-            cases[i].width, cases[i].height, {cases[i].rate, 1}, ZT_VIEW_SRGB, 0, NULL};
+        zt_output_format wrong = {.width = cases[i].width,
+                                  .height = cases[i].height,
+                                  .rate = {cases[i].rate, 1},
+                                  .view = ZT_VIEW_SRGB};
         heard h;
         zt_output *output;
         assert_int_not_equal(zt_output_open(&output, target, &wrong, options, listener_of(&h)),
@@ -340,7 +345,11 @@ static void no_room(void **state) {
     (void)state;
     const char *const targets[] = {"room/a.mp4", "room/a.gif", "room/a.apng"};
     for (int i = 0; i < 3; i++) {
-        zt_output_format endless = {3840, 2160, {24, 1}, ZT_VIEW_SRGB, INT64_C(1) << 40, NULL};
+        zt_output_format endless = {.width = 3840,
+                                    .height = 2160,
+                                    .rate = {24, 1},
+                                    .view = ZT_VIEW_SRGB,
+                                    .frame_count = INT64_C(1) << 40};
         heard h;
         zt_output *output;
         assert_int_equal(zt_output_open(&output, targets[i], &endless, NULL, listener_of(&h)),

@@ -28,7 +28,11 @@ static const char *browser(void) {
 
 /* The card, for a second. */
 static void write_film(const char *path) {
-    const zt_output_format format = {WIDTH, HEIGHT, {24, 1}, ZT_VIEW_SRGB, FRAME_COUNT, NULL};
+    const zt_output_format format = {.width = WIDTH,
+                                     .height = HEIGHT,
+                                     .rate = {24, 1},
+                                     .view = ZT_VIEW_SRGB,
+                                     .frame_count = FRAME_COUNT};
     zt_output *output = open_movie(path, &format);
     zt_image *card = test_card(CARD);
     for (int f = 0; f < FRAME_COUNT; f++)

@@ -11,7 +11,8 @@
 #include "files.h"
 #include "movies.h"
 
-static const zt_output_format small = {64, 48, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+static const zt_output_format small = {
+    .width = 64, .height = 48, .rate = {24, 1}, .view = ZT_VIEW_SRGB};
 
 /* time_base * ticks == count / rate, as rationals. */
 static void assert_time(int64_t ticks, AVRational time_base, int64_t count, zt_rate rate) {
@@ -112,7 +113,7 @@ static void times_are_exact(void **state) {
 static void tags(void **state) {
     (void)state;
     for (int view = 0; view < ZT_VIEW_COUNT; view++) {
-        zt_output_format format = {322, 178, {24, 1}, view, 0, NULL};
+        zt_output_format format = {.width = 322, .height = 178, .rate = {24, 1}, .view = view};
         write_movie("tags.mp4", &format, 5);
         film m = film_open("tags.mp4");
         const AVCodecParameters *p = m.stream->codecpar;
@@ -221,8 +222,10 @@ static void colours(void **state) {
     (void)state;
     const int frame_count = 30, width = PATCH_COLUMNS * PATCH;
     for (int view = ZT_VIEW_RAW; view <= ZT_VIEW_SRGB; view++) {
-        zt_output_format format = {width, PATCH_COUNT / PATCH_COLUMNS * PATCH, {24, 1}, view, 0,
-                                   NULL};
+        zt_output_format format = {.width = width,
+                                   .height = PATCH_COUNT / PATCH_COLUMNS * PATCH,
+                                   .rate = {24, 1},
+                                   .view = view};
         zt_image *card = test_card(PATCH);
         zt_output *output = open_movie("card.mp4", &format);
         for (int f = 0; f < frame_count; f++)
@@ -247,7 +250,7 @@ static void colours(void **state) {
  * so. */
 static void chroma_is_left(void **state) {
     (void)state;
-    zt_output_format format = {64, 64, {24, 1}, ZT_VIEW_RAW, 0, NULL};
+    zt_output_format format = {.width = 64, .height = 64, .rate = {24, 1}, .view = ZT_VIEW_RAW};
     zt_image *image;
     assert_int_equal(zt_image_create(&image, 64, 64), ZT_OK);
     for (int y = 0; y < 64; y++)
@@ -282,15 +285,17 @@ static void impossible_sizes(void **state) {
     for (int i = 0; i < 4; i++) {
         heard h;
         zt_output *output;
-        zt_output_format format = {
-            sizes[i].width, sizes[i].height, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+        zt_output_format format = {.width = sizes[i].width,
+                                   .height = sizes[i].height,
+                                   .rate = {24, 1},
+                                   .view = ZT_VIEW_SRGB};
         assert_int_not_equal(
             zt_output_open(&output, "sizes/a.mp4", &format, NULL, listener_of(&h)), ZT_OK);
         assert_null(output);
         assert_told(&h, sizes[i].words);
         assert_false(exists("sizes/a.mp4") || exists("sizes/a.mp4.part"));
     }
-    zt_output_format least = {2, 2, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+    zt_output_format least = {.width = 2, .height = 2, .rate = {24, 1}, .view = ZT_VIEW_SRGB};
     write_movie("least.mp4", &least, 3);
     film m = film_open("least.mp4");
     assert_int_equal(m.packet_count, 3);
@@ -389,7 +394,8 @@ static void interrupted_anywhere(void **state) {
  * an older film stays. With room for the pictures but not for the table at the end, too. */
 static void full_disk(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+    zt_output_format format = {
+        .width = 320, .height = 240, .rate = {24, 1}, .view = ZT_VIEW_SRGB};
     write_movie("whole.mp4", &format, 100);
     struct stat whole;
     assert_int_equal(stat("whole.mp4", &whole), 0);
@@ -424,7 +430,8 @@ static void full_disk(void **state) {
 /* The same film is the same file, also where the process may use only one core. */
 static void same_bits(void **state) {
     (void)state;
-    zt_output_format format = {320, 240, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+    zt_output_format format = {
+        .width = 320, .height = 240, .rate = {24, 1}, .view = ZT_VIEW_SRGB};
     write_movie("a.mp4", &format, 60);
     write_movie("b.mp4", &format, 60);
     assert_true(same_files("a.mp4", "b.mp4"));
