@@ -158,6 +158,7 @@ bool write_named(Bytes &bytes, OIIO::ImageOutput &output, const zt_image *image,
 
 zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
                  const zt_image_wishes *wishes, const char *path, zt_listener listener) {
+    zt::stay_on_thread();
     std::vector<Part> parts;
     zt_status status = zt::make_parts(parts, image, wishes);
     if (status != ZT_OK) return status;

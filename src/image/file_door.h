@@ -41,6 +41,13 @@ zt_status without_exceptions(zt_listener listener, const char *what, const char 
     }
 }
 
+/* Several images are made at a time: none is shared out among threads of OpenImageIO or of
+ * OpenEXR; whose own, started by the first of several files at a time, may wait for ever. */
+inline void stay_on_thread() {
+    static const bool set = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+    (void)set;
+}
+
 /* What an image is of, as texts. */
 struct Texts {
     char *all[ZT_INFO_COUNT] = {};

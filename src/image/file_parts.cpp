@@ -44,9 +44,11 @@ void add_particulars(OIIO::ImageSpec &spec, const zt_image_wishes *w) {
     } else if (is_format(w, ".jpg")) {
         spec.attribute("jpeg:subsampling", "4:4:4");
     } else if (is_format(w, ".png")) {
-        /* Differences to the left neighbour (8 is "none", 16 "sub"): a third of the time of
-         * the default, for files that are a fifth larger. */
-        spec.attribute("png:compressionLevel", w->level);
+        /* Differences to the left neighbour (8 is "none", 16 "sub"), of which runs, or what
+         * zlib finds. */
+        bool runs = strcmp(w->compression->name, "rle") == 0;
+        spec.attribute("compression", runs ? "rle" : "default");
+        spec.attribute("png:compressionLevel", runs ? 1 : w->level);
         spec.attribute("png:filter", 16);
     }
     if (is_format(w, ".exr") || is_format(w, ".tif") || is_format(w, ".dpx") ||

@@ -110,6 +110,7 @@ std::unique_ptr<OIIO::ImageInput> open(std::string &why, const char *path,
 
 zt_status zt::read(zt_image **image, const char *path, const zt_bytes *bytes,
                    zt_listener listener) {
+    stay_on_thread();
     std::string why;
     OIIO::Filesystem::IOMemReader memory(bytes ? bytes->data : nullptr,
                                          bytes ? bytes->size : 0);

@@ -33,6 +33,7 @@ typedef struct zt_image_format {
     zt_depth depths[ZT_DEPTH_COUNT]; /* the first is the usual one */
     int depth_count;
     const zt_compression *compressions; /* the first is the usual one; NULL: none to choose */
+    const char *of_floats;              /* that of floats, where it is another */
     bool has_tiles, has_alpha;
     bool has_layers; /* further channels, in one part or in several */
 } zt_image_format;
