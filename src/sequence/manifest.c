@@ -171,10 +171,11 @@ typedef struct reading {
     int line_number, wrong_count, first_wrong;
 } reading;
 
-/* Whether a line that cannot be read ends too early, as those do whose writer was killed. */
+/* Whether a line that cannot be read ends too early, as those do whose writer was killed: in
+ * the middle of a piece, and not behind its bracket. */
 static bool is_cut(const zt_json *json) {
     const char *rest = json->at + strspn(json->at, "+-.0123456789abcdefABCDEFu\\");
-    return rest[strspn(rest, " \r\n")] == '\0';
+    return *rest == '\0' && (json->at == json->text || json->at[-1] != '}');
 }
 
 static zt_status read_line(reading *r, const char *text, bool tells, bool *cut) {
@@ -196,6 +197,7 @@ static zt_status take_line(reading *r, char *text, size_t length) {
     r->line_number++;
     for (size_t i = 0; i < length; i++)
         if (!text[i]) text[i] = 1; /* which is no JSON */
+    if (text[length - 1] == '\n') text[length - 1] = '\0';
     if (text[strspn(text, " \t\r\n")] == '\0') return ZT_OK;
     zt_status status = read_line(r, text, false, &cut);
     if (status != ZT_EFILE || (cut && (r->manifest->header || !r->strict)))

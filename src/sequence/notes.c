@@ -51,9 +51,11 @@ static bool print_all(FILE *file, const zt_manifest *m) {
     return fflush(file) == 0 && !ferror(file);
 }
 
-/* Lines that count, if each thing had one of its own. */
+/* How many lines there would be: images are on those of their frames. */
 static size_t live_count(const zt_manifest *m) {
-    return 1 + m->frame_count + m->record_count + m->split_count;
+    size_t count = 1 + m->frame_count + m->split_count;
+    for (size_t i = 0; i < m->record_count; i++) count += m->records[i].kind != ZT_RECORD_IMAGE;
+    return count;
 }
 
 /* Nobody sees half of it. */
