@@ -402,14 +402,17 @@ static void options_count(void **state) {
     }
 }
 
-/* Title, comment and how it was made are in the container, whoever asks for them. */
+/* Title, comment, how it was encoded and how it was rendered are in the container. */
 static void metadata(void **state) {
     (void)state;
     const char *const files[] = {"meta.mp4", "meta.mov", "meta.mkv", "meta.webm"};
     const zt_output_option options[] = {
         {"title", "für – 日本"}, {"comment", "a; b = \"c\""}, {"crf", "21"}, {NULL, NULL}};
+    const char *const rendered[] = {"synopsis", "encoder", "settings", "settings"};
+    zt_output_format told = format;
+    told.settings = "{\"zoetrope\": 1, \"samples\": 4}";
     for (int i = 0; i < 4; i++) {
-        write_movie_by(files[i], &format, options, 3);
+        write_movie_by(files[i], &told, options, 3);
         film m = film_open(files[i]);
         AVDictionary *tags = m.container->metadata;
         const char *settings = i == 1 ? "encoder" : "description";
@@ -418,6 +421,9 @@ static void metadata(void **state) {
         assert_non_null(av_dict_get(tags, settings, NULL, 0));
         assert_non_null(
             strstr(av_dict_get(tags, settings, NULL, 0)->value, "yuv420p, crf 21, preset "));
+        const AVDictionaryEntry *how = av_dict_get(tags, rendered[i], NULL, 0);
+        if (!how) fail_msg("%s has no %s", files[i], rendered[i]);
+        assert_non_null(strstr(how->value, told.settings));
         film_close(&m);
     }
 }

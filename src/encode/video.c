@@ -69,6 +69,7 @@ static void movie_free(movie *m, bool keeps_pieces, bool keeps_frames) {
     av_frame_free(&m->like);
     avcodec_parameters_free(&m->parameters);
     free_options(m);
+    free((char *)m->format.settings);
     free((char *)m->ear.target);
     free(m);
 }
@@ -180,15 +181,19 @@ static zt_status open_growth(movie *m) {
     AVCodecContext *encoder = NULL;
     zt_status status = open_encoder(&encoder, m);
     if (status == ZT_OK) status = try_join(m);
-    if (status != ZT_OK || m->choice.stored) zt_video_encoder_close(&encoder, m->choice.stored ? NULL : m->like);
+    if (status != ZT_OK || m->choice.stored)
+        zt_video_encoder_close(&encoder, m->choice.stored ? NULL : m->like);
     ZT_TRY(status);
-    return zt_video_growth_open(&m->growth, m->ear.target, &m->grown, &m->format, m->like,
-                                encoder, zt_video_said(&m->choice, m->ear.target), &m->ear);
+    return zt_video_growth_open(
+        &m->growth, m->ear.target, &m->grown, &m->format, m->like, encoder,
+        zt_video_said(&m->choice, m->format.settings, m->ear.target), &m->ear);
 }
 
 static zt_status open_all(movie *m, const char *target, const zt_output_option *options) {
+    const char *settings = m->format.settings;
     m->ear.target = strdup(target);
-    if (!m->ear.target) return ZT_EMEMORY;
+    m->format.settings = settings ? strdup(settings) : NULL;
+    if (!m->ear.target || (settings && !m->format.settings)) return ZT_EMEMORY;
     ZT_TRY(copy_options(m, options));
     ZT_TRY(zt_video_choose(&m->choice, &m->format, m->options, &m->ear));
     ZT_TRY(choose_grown(m));

@@ -15,6 +15,7 @@
 /* A file's kind, chosen by its ending. */
 typedef struct zt_container {
     const char *ending, *muxer;
+    const char *settings;           /* the tag that holds them; NULL: none of its own */
     const char *codec;              /* where none is asked for */
     const char *sound;              /* the encoder of sound; NULL: it holds none */
     enum AVCodecID takes_sound[12]; /* that is copied; AV_CODEC_ID_NONE after the last */

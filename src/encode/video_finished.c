@@ -35,10 +35,13 @@ static bool read_file(zt_hash *checksum, int64_t *size, const char *path) {
     return good;
 }
 
-zt_hash zt_video_said(const zt_video_choice *choice, const char *target) {
-    const char *const texts[] = {
-        choice->container->ending, choice->codec->name, av_get_pix_fmt_name(choice->pixels),
-        zt_wish_value(choice->options, "title"), zt_wish_value(choice->options, "comment")};
+zt_hash zt_video_said(const zt_video_choice *choice, const char *settings, const char *target) {
+    const char *const texts[] = {choice->container->ending,
+                                 choice->codec->name,
+                                 av_get_pix_fmt_name(choice->pixels),
+                                 settings,
+                                 zt_wish_value(choice->options, "title"),
+                                 zt_wish_value(choice->options, "comment")};
     zt_hash said = {0};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         said = mix(said, texts[i], texts[i] ? strlen(texts[i]) + 1 : 0);

@@ -7,9 +7,9 @@
 
 #include "encode/video_codecs.h"
 
-/* What a film says and sounds besides its frames: its kind, texts, and the contents of the file
- * with the sound. */
-zt_hash zt_video_said(const zt_video_choice *choice, const char *target);
+/* What a film says and sounds besides its frames: its kind, texts, `settings` among them, and
+ * the contents of the file with the sound. */
+zt_hash zt_video_said(const zt_video_choice *choice, const char *settings, const char *target);
 
 /* A record of the finished film of all frames of the plan. ZT_EFILE, told, where it cannot be
  * read. */

@@ -8,29 +8,31 @@
 enum { TIMESCALE_MIN = 10000 };
 
 /* How the film was made, in words. */
-enum { SETTINGS_MAX = 512 };
+enum { ENCODING_MAX = 512 };
 
-static void describe(char text[SETTINGS_MAX], const zt_video_choice *choice,
+static void describe(char text[ENCODING_MAX], const zt_video_choice *choice,
                      const zt_output_format *format) {
     char how[256];
     zt_video_describe(how, sizeof how, choice);
-    snprintf(text, SETTINGS_MAX, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s", how,
+    snprintf(text, ENCODING_MAX, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s", how,
              format->width, format->height, format->rate.num, format->rate.den,
              zt_view_name(format->view));
 }
 
-/* What the file says of itself, where its kind holds that. */
+/* What the file says of itself, where its kind holds that: how it was encoded, and, in a tag
+ * that the kind has, how it was rendered. */
 static zt_status write_metadata(zt_video_join *w, const zt_video_choice *choice,
                                 const zt_output_format *format, const zt_video_ear *ear) {
-    char settings[SETTINGS_MAX];
-    describe(settings, choice, format);
+    char encoding[ENCODING_MAX];
+    describe(encoding, choice, format);
     const struct {
         const char *name, *value;
     } tags[] = {{"title", zt_wish_value(choice->options, "title")},
                 {"comment", zt_wish_value(choice->options, "comment")},
-                {"description", settings}};
+                {"description", encoding},
+                {choice->container->settings, format->settings}};
     for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
-        if (tags[i].value)
+        if (tags[i].name && tags[i].value)
             AV_TRY(ear, av_dict_set(&w->container->metadata, tags[i].name, tags[i].value, 0));
     return ZT_OK;
 }
@@ -69,6 +71,20 @@ static zt_status open_file(zt_video_join *w, const char *path, const zt_containe
     return ZT_OK;
 }
 
+/* QuickTime's tag for the software, which has to do for the settings, too. The head leaves it
+ * out; the end writes it. */
+static zt_status write_software(zt_video_join *w, const zt_video_choice *choice,
+                                const zt_output_format *format, const zt_video_ear *ear) {
+    AVDictionary **tags = &w->container->metadata;
+    const AVDictionaryEntry *encoding = av_dict_get(*tags, "description", NULL, 0);
+    bool joint = format->settings && !choice->container->settings;
+    char *text = zt_text_print("%s%s%s", encoding->value, joint ? "; " : "",
+                               joint ? format->settings : "");
+    if (!text) return ZT_EMEMORY;
+    AV_TRY(ear, av_dict_set(tags, "encoder", text, AV_DICT_DONT_STRDUP_VAL));
+    return ZT_OK;
+}
+
 /* Sound, texts and the head, which depend on the stream. */
 static zt_status begin(zt_video_join *w, const zt_video_choice *choice,
                        const zt_output_format *format, const zt_video_ear *ear) {
@@ -77,11 +93,7 @@ static zt_status begin(zt_video_join *w, const zt_video_choice *choice,
         ZT_TRY(zt_video_sound_open(&w->sound, sound, w->container, choice->container, ear));
     ZT_TRY(write_metadata(w, choice, format, ear));
     AV_TRY(ear, write_header(w, choice->container));
-    /* QuickTime's tag for the software. The head leaves it out; the end writes it. */
-    AVDictionary **tags = &w->container->metadata;
-    const AVDictionaryEntry *settings = av_dict_get(*tags, "description", NULL, 0);
-    if (settings) AV_TRY(ear, av_dict_set(tags, "encoder", settings->value, 0));
-    return ZT_OK;
+    return write_software(w, choice, format, ear);
 }
 
 zt_status zt_video_join_open(zt_video_join *w, const char *path, const zt_video_choice *choice,

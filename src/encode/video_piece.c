@@ -81,7 +81,8 @@ int zt_piece_begin(zt_piece_muxer *p, const AVCodecParameters *parameters, AVRat
 }
 
 /* When a packet is decoded must rise, and never be after it is shown. Matroska holds that only
- * of codecs which it has by the ways of AVI, and none of those has pictures in another order. */
+ * of codecs which it has by the ways of AVI, and none of those has pictures in another order.
+ */
 int zt_piece_put(zt_piece_muxer *p, AVPacket *packet) {
     const AVStream *stream = p->muxer->streams[0];
     const AVCodecDescriptor *codec = avcodec_descriptor_get(stream->codecpar->codec_id);
