@@ -9,7 +9,8 @@
 #include "image/file.h"
 #include <zoetrope/output.h>
 
-static const zt_output_format format = {16, 12, {24, 1}, ZT_VIEW_SRGB, 0, NULL};
+static const zt_output_format format = {
+    .width = 16, .height = 12, .rate = {24, 1}, .view = ZT_VIEW_SRGB};
 
 static zt_output *open_output(const char *target) {
     heard h;
@@ -279,9 +280,12 @@ static void rules(void **state) {
     assert_int_equal(entry_count("rules"), 2); /* the two images that were complete */
 
     const zt_output_format wrong[] = {
-        {0, 12, {24, 1}, ZT_VIEW_RAW, 0, NULL},     {16, -2, {24, 1}, ZT_VIEW_RAW, 0, NULL},
-        {16, 65538, {24, 1}, ZT_VIEW_RAW, 0, NULL}, {16, 12, {0, 1}, ZT_VIEW_RAW, 0, NULL},
-        {16, 12, {24, 0}, ZT_VIEW_RAW, 0, NULL},    {16, 12, {-24, -1}, ZT_VIEW_RAW, 0, NULL}};
+        {.width = 0, .height = 12, .rate = {24, 1}, .view = ZT_VIEW_RAW},
+        {.width = 16, .height = -2, .rate = {24, 1}, .view = ZT_VIEW_RAW},
+        {.width = 16, .height = 65538, .rate = {24, 1}, .view = ZT_VIEW_RAW},
+        {.width = 16, .height = 12, .rate = {0, 1}, .view = ZT_VIEW_RAW},
+        {.width = 16, .height = 12, .rate = {24, 0}, .view = ZT_VIEW_RAW},
+        {.width = 16, .height = 12, .rate = {-24, -1}, .view = ZT_VIEW_RAW}};
     for (int i = 0; i < 6; i++) {
         assert_int_equal(
             zt_output_open(&output, "wrong/a.mp4", &wrong[i], NULL, listener_of(&h)),

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <zoetrope/color.h>
 #include <zoetrope/hash.h>
 #include <zoetrope/image.h>
 #include <zoetrope/rate.h>
@@ -26,16 +27,16 @@ typedef enum zt_record_kind {
 
 typedef struct zt_output_record {
     zt_record_kind kind;
-    int64_t first;    /* an image: its frame's number; else the position of the first frame, as
-                         frames come, from 0 */
-    int64_t count;    /* of frames; 1 of an image */
-    zt_hash key;      /* of what decides the bytes: all of its frames' keys, and how they are
-                         written */
-    int64_t bytes;    /* the size of the file; of a piece, where it ends in the file that grows */
+    int64_t first; /* an image: its frame's number; else the position of the first frame, as
+                      frames come, from 0 */
+    int64_t count; /* of frames; 1 of an image */
+    zt_hash key;   /* of what decides the bytes: all of its frames' keys, and how they are
+                      written */
+    int64_t bytes; /* the size of the file; of a piece, where it ends in the file that grows */
     zt_hash checksum; /* of the file; of a piece, of what is in it */
     double render_s;  /* seconds of wall time that its frames took to render, added up */
-    const char *file; /* of an image: its file, for readers: nothing is opened by it. NULL: none,
-                         or not known */
+    const char *file; /* of an image: its file, for readers: nothing is opened by it. NULL:
+                         none, or not known */
 } zt_output_record;
 
 /* What is to come, and what there is of it. The caller's, until the output is closed. */
@@ -58,6 +59,7 @@ typedef struct zt_output_format {
     int width, height;
     zt_rate rate;
     zt_view view;
+    zt_color_wish color; /* counts instead of the view; its texts are for opening alone */
     int64_t frame_count; /* how many will come; 0 where that is not known */
     const zt_output_plan
         *plan; /* NULL: frames come as they do, and what is there is replaced */

@@ -22,6 +22,7 @@ typedef struct stills {
     bool single_written;
     zt_view view;
     zt_image_wishes wishes;
+    zt_color *color;                  /* of the wishes */
     const zt_output_plan *plan;       /* NULL: none */
     const zt_output_record **records; /* those of single images, by frame, later ones behind */
     int64_t record_count;
@@ -44,6 +45,7 @@ static zt_status close_stills(void *state, bool keep) {
     free(images->after);
     free(images->records);
     free(images->manner);
+    zt_color_close(&images->color);
     free(images);
     return ZT_OK;
 }
@@ -116,10 +118,11 @@ static char *path_of(const stills *images, int64_t frame) {
 /* All that decides how the numbers of an image become the bytes of a file. */
 static char *manner_of(const stills *images, const zt_output_format *format) {
     const zt_image_wishes *w = &images->wishes;
-    return zt_text_print("%s depth %d compression %s:%d tile %d view %d rate %d/%d",
+    const char *view = images->color ? images->color->manner : zt_view_name(format->view);
+    return zt_text_print("%s depth %d compression %s:%d tile %d view %s rate %d/%d",
                          w->format->endings[0], (int)w->depth,
-                         w->compression ? w->compression->name : "", w->level, w->tile,
-                         (int)format->view, format->rate.num, format->rate.den);
+                         w->compression ? w->compression->name : "", w->level, w->tile, view,
+                         format->rate.num, format->rate.den);
 }
 
 static bool is_known(zt_hash hash) { return hash.high || hash.low; }
@@ -239,6 +242,9 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
     images->listener = listener;
     zt_status status = zt_image_wish(&images->wishes, target, options, listener);
     if (status == ZT_OK) status = read_pattern(images, target);
+    if (status == ZT_OK && images->wishes.depth < ZT_DEPTH_HALF)
+        status = zt_color_open(&images->color, &format->color, listener);
+    images->wishes.color = images->color;
     if (status == ZT_OK && !images->after && format->frame_count > 1)
         status = refuse_several(images);
     if (status == ZT_OK) status = follow_plan(images, format);

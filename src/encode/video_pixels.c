@@ -1,5 +1,5 @@
-/* R'G'B' of 8 or 16 bits is developed (image/develop.h). Formats of R'G'B' get it as it is,
- * formats of Y'CbCr by libswscale, or with more than 8 bits by video_ycbcr. */
+/* Rows are developed to R'G'B' in floats (image/develop.h), become Y'CbCr where the format asks
+ * for it, and are dithered once, to the codes of the format. */
 #include "encode/video_pixels.h"
 
 #include <math.h>
@@ -9,24 +9,29 @@
 
 #include <libavutil/imgutils.h>
 #include <libavutil/intreadwrite.h>
-#include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 
+#include "base/text.h"
 #include "encode/video_ycbcr.h"
 #include "image/develop.h"
+#include "image/dither.h"
 
 struct zt_video_pixels {
     const AVPixFmtDescriptor *layout; /* of the frames */
     enum AVPixelFormat pixels;
-    bool is_rgb, is_deep, has_alpha;
-    AVFrame *rgb;                 /* an image developed: RGB24, RGBA, RGB48 or RGBA64 */
-    struct SwsContext *converter; /* from there to Y'CbCr of 8 bits; else NULL */
-    float *chroma;                /* for Y'CbCr of more */
-    zt_image row;                 /* one, without the alpha in its colours */
-    uint16_t *line;               /* of one component */
-    zt_view view;
+    bool is_rgb, has_alpha;
+    zt_color *color; /* NULL: the view */
+    zt_developing how;
+    char *manner;
 };
+
+/* What one conversion works with, in one piece of memory. */
+typedef struct lines {
+    float *shown;    /* a row of R'G'B' */
+    float *one;      /* a line of one component */
+    float *cb, *cr;  /* sums of chroma */
+    uint16_t *codes; /* of a line */
+} lines;
 
 static zt_status make_frame(AVFrame **frame, int width, int height, enum AVPixelFormat pixels,
                             const zt_video_ear *ear) {
@@ -50,7 +55,8 @@ static zt_status make_frame(AVFrame **frame, int width, int height, enum AVPixel
  * that some programs take it for unknown. The few that take 709 at its word show the shadows a
  * little lighter, as of all films made on such a display.
  *
- * R'G'B' is tagged as what it is: those who read APNG take 709 at its word. */
+ * R'G'B' is tagged as what it is, displays of OpenColorIO as sRGB's: those who read APNG take
+ * 709 at its word. */
 static void tag_frame(const zt_video_pixels *p, AVFrame *frame) {
     frame->color_primaries = AVCOL_PRI_BT709;
     static const enum AVColorTransferCharacteristic transfers[ZT_VIEW_COUNT] = {
@@ -58,53 +64,18 @@ static void tag_frame(const zt_video_pixels *p, AVFrame *frame) {
         [ZT_VIEW_SRGB] = AVCOL_TRC_IEC61966_2_1,
         [ZT_VIEW_REC709] = AVCOL_TRC_BT709,
         [ZT_VIEW_FILMIC] = AVCOL_TRC_IEC61966_2_1};
-    frame->color_trc = p->is_rgb ? transfers[p->view] : AVCOL_TRC_BT709;
+    zt_view view = p->color ? ZT_VIEW_SRGB : p->how.view;
+    frame->color_trc = p->is_rgb ? transfers[view] : AVCOL_TRC_BT709;
     frame->colorspace = p->is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
     frame->color_range = p->is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     if (!p->is_rgb) frame->chroma_location = AVCHROMA_LOC_LEFT;
 }
 
-/* From full-range R'G'B' to BT.709 limited range, rounded and with chroma from all pixels. */
-static zt_status make_converter(zt_video_pixels *p, const zt_video_ear *ear) {
-    p->converter = sws_alloc_context();
-    if (!p->converter) return ZT_EMEMORY;
-    const struct {
-        const char *name;
-        int64_t value;
-    } options[] = {
-        {"srcw", p->rgb->width},
-        {"srch", p->rgb->height},
-        {"src_format", p->rgb->format},
-        {"src_range", 1},
-        {"dstw", p->rgb->width},
-        {"dsth", p->rgb->height},
-        {"dst_format", p->pixels},
-        {"dst_range", 0},
-        {"dst_h_chr_pos", 0},                                  /* left in its pair of pixels, */
-        {"dst_v_chr_pos", p->layout->log2_chroma_h ? 128 : 0}, /* in the middle of its rows */
-        {"sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP | SWS_BITEXACT},
-    };
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-        AV_TRY(ear, av_opt_set_int(p->converter, options[i].name, options[i].value, 0));
-    AV_TRY(ear, sws_init_context(p->converter, NULL, NULL));
-    const int *bt709 = sws_getCoefficients(SWS_CS_ITU709);
-    AV_TRY(ear,
-           sws_setColorspaceDetails(p->converter, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
+static zt_status check_size(const zt_output_format *format, enum AVPixelFormat pixels,
+                            const zt_video_ear *ear) {
+    AV_TRY(ear, av_image_check_size2((unsigned)format->width, (unsigned)format->height,
+                                     INT64_MAX, pixels, 0, NULL));
     return ZT_OK;
-}
-
-static zt_status open_all(zt_video_pixels *p, const zt_output_format *format,
-                          const zt_video_ear *ear) {
-    enum AVPixelFormat rgb = p->is_deep ? AV_PIX_FMT_RGB48 : AV_PIX_FMT_RGB24;
-    if (p->has_alpha) rgb = p->is_deep ? AV_PIX_FMT_RGBA64 : AV_PIX_FMT_RGBA;
-    ZT_TRY(make_frame(&p->rgb, format->width, format->height, rgb, ear));
-    size_t width = (size_t)format->width;
-    p->row = (zt_image){.width = format->width, .height = 1};
-    p->row.pixels = malloc(4 * width * sizeof *p->row.pixels);
-    p->line = malloc(4 * width * sizeof *p->line);
-    p->chroma = malloc(2 * (width + 2) * sizeof *p->chroma);
-    if (!p->row.pixels || !p->line || !p->chroma) return ZT_EMEMORY;
-    return p->is_rgb || p->is_deep ? ZT_OK : make_converter(p, ear);
 }
 
 zt_status zt_video_pixels_open(zt_video_pixels **out, const zt_output_format *format,
@@ -114,11 +85,16 @@ zt_status zt_video_pixels_open(zt_video_pixels **out, const zt_output_format *fo
     if (!p) return ZT_EMEMORY;
     p->layout = av_pix_fmt_desc_get(pixels);
     p->pixels = pixels;
-    p->view = format->view;
     p->is_rgb = p->layout->flags & AV_PIX_FMT_FLAG_RGB;
-    p->is_deep = p->layout->comp[0].depth > 8;
     p->has_alpha = p->layout->flags & AV_PIX_FMT_FLAG_ALPHA;
-    zt_status status = open_all(p, format, ear);
+    zt_status status = check_size(format, pixels, ear);
+    if (status == ZT_OK) status = zt_color_open(&p->color, &format->color, ear->listener);
+    p->how = (zt_developing){.view = format->view,
+                             .color = p->color,
+                             .alpha = p->has_alpha ? ZT_ALPHA_DIVIDED : ZT_ALPHA_LEFT_OUT};
+    p->manner = zt_text_print("%s %s, dithered", av_get_pix_fmt_name(pixels),
+                              p->color ? p->color->manner : zt_view_name(format->view));
+    if (status == ZT_OK && !p->manner) status = ZT_EMEMORY;
     if (status == ZT_OK)
         *out = p;
     else
@@ -129,108 +105,104 @@ zt_status zt_video_pixels_open(zt_video_pixels **out, const zt_output_format *fo
 void zt_video_pixels_close(zt_video_pixels **converter) {
     zt_video_pixels *p = *converter;
     if (!p) return;
-    sws_freeContext(p->converter);
-    av_frame_free(&p->rgb);
-    free(p->row.pixels);
-    free(p->line);
-    free(p->chroma);
+    zt_color_close(&p->color);
+    free(p->manner);
     free(p);
     *converter = NULL;
 }
 
-/* Colours come multiplied by alpha; files hold them without. */
-static void divide_by_alpha(float *row, const float *pixels, int width) {
-    for (int i = 0; i < 4 * width; i++) {
-        float alpha = pixels[i / 4 * 4 + 3];
-        row[i] = alpha > 0 && alpha < 1 && i % 4 < 3 ? pixels[i] / alpha : pixels[i];
-    }
+const char *zt_video_pixels_manner(const zt_video_pixels *converter) {
+    return converter->manner;
 }
 
-/* One row of R'G'B' and alpha, which is linear in all views. */
-static void develop_alpha(zt_video_pixels *p, const float *pixels, uint8_t *out) {
-    int width = p->row.width, max = p->is_deep ? 65535 : 255;
-    uint16_t *deep = (uint16_t *)out;
-    divide_by_alpha(p->row.pixels, pixels, width);
-    if (p->is_deep)
-        zt_develop_rgb16(p->line, 0, &p->row, p->view, 0, 1);
-    else
-        zt_develop_rgb8((uint8_t *)p->line, 0, &p->row, p->view, 0, 1);
-    for (int i = 0; i < 4 * width; i++) {
-        int from = i / 4 * 3 + i % 4;
-        double alpha = zt_develop_value((double)pixels[i / 4 * 4 + 3], ZT_VIEW_RAW);
-        int value = i % 4 == 3   ? (int)(max * alpha + 0.5)
-                    : p->is_deep ? p->line[from]
-                                 : ((uint8_t *)p->line)[from];
-        if (p->is_deep)
-            deep[i] = (uint16_t)value;
-        else
-            out[i] = (uint8_t)value;
-    }
+static bool make_lines(lines *l, int width) {
+    size_t count = (size_t)width;
+    l->shown = calloc(3 * count + count + 2 * (count + 2), sizeof *l->shown);
+    l->codes = malloc(count * sizeof *l->codes);
+    if (!l->shown) return false;
+    l->one = l->shown + 3 * count;
+    l->cb = l->one + count;
+    l->cr = l->cb + count + 2;
+    return l->codes;
 }
 
-static void develop(zt_video_pixels *p, const zt_image *image) {
-    size_t stride = (size_t)p->rgb->linesize[0];
-    if (!p->has_alpha && p->is_deep)
-        zt_develop_rgb16((uint16_t *)(void *)p->rgb->data[0], stride, image, p->view, 0,
-                         image->height);
-    else if (!p->has_alpha)
-        zt_develop_rgb8(p->rgb->data[0], stride, image, p->view, 0, image->height);
-    for (int y = 0; p->has_alpha && y < image->height; y++)
-        develop_alpha(p, image->pixels + (size_t)y * (size_t)image->width * 4,
-                      p->rgb->data[0] + (size_t)y * stride);
+static void free_lines(lines *l) {
+    free(l->shown);
+    free(l->codes);
 }
 
-/* A line of one component; those of more than 8 bits fill the low ones of 16. */
-static void put_line(AVFrame *frame, const AVPixFmtDescriptor *layout, int y, int component,
-                     const uint16_t *line) {
-    const AVComponentDescriptor *c = &layout->comp[component];
+/* A line of one component, from `count` numbers that are `scale` times less than codes; those
+ * of more than 8 bits fill the low ones of 16. Colours are dithered, each component by rows of
+ * its own but R'G'B', so that grey stays grey; 16 bits and alpha are not. */
+static void put_line(AVFrame *frame, const zt_video_pixels *p, int y, int component,
+                     const float *numbers, int count, float scale, uint16_t *codes) {
+    const AVComponentDescriptor *c = &p->layout->comp[component];
     uint8_t *at = frame->data[c->plane] + (ptrdiff_t)y * frame->linesize[c->plane] + c->offset;
-    bool big_endian = layout->flags & AV_PIX_FMT_FLAG_BE;
-    for (int x = 0; x < frame->width; x++, at += c->step)
-        if (c->depth <= 8)
-            *at = (uint8_t)line[x];
-        else if (big_endian)
-            AV_WB16(at, line[x]);
-        else
-            AV_WL16(at, line[x]);
-}
-
-/* R'G'B' in another layout: each number the nearest of the format's. */
-static void lay_out(zt_video_pixels *p, AVFrame *frame) {
-    int component_count = p->has_alpha ? 4 : 3, width = frame->width;
-    for (int y = 0; y < frame->height; y++) {
-        const uint8_t *row = p->rgb->data[0] + (ptrdiff_t)y * p->rgb->linesize[0];
-        const uint16_t *deep = (const uint16_t *)(const void *)row;
-        for (int c = 0; c < component_count; c++) {
-            uint32_t max = (1u << p->layout->comp[c].depth) - 1;
-            for (int x = 0; x < width; x++) {
-                int from = x * component_count + c;
-                p->line[x] =
-                    p->is_deep ? (uint16_t)((deep[from] * max + 32767) / 65535) : row[from];
-            }
-            put_line(frame, p->layout, y, c, p->line);
-        }
-    }
-}
-
-zt_status zt_video_pixels_convert(AVFrame **frame, zt_video_pixels *p, const zt_image *image,
-                                  const zt_video_ear *ear) {
-    develop(p, image);
-    zt_status status = make_frame(frame, image->width, image->height, p->pixels, ear);
-    if (status == ZT_OK && p->converter) {
-        const uint8_t *const *rgb = (const uint8_t *const *)p->rgb->data;
-        int error = sws_scale(p->converter, rgb, p->rgb->linesize, 0, image->height,
-                              (*frame)->data, (*frame)->linesize);
-        if (error < 0) status = zt_libav_refuse(ear, error);
-    } else if (status == ZT_OK && p->is_rgb) {
-        lay_out(p, *frame);
-    } else if (status == ZT_OK) {
-        zt_video_ycbcr(*frame, p->rgb, p->chroma);
-    }
-    if (status == ZT_OK)
-        tag_frame(p, *frame);
+    bool dithered = component < 3 && c->depth < 16;
+    int apart = p->is_rgb ? 0 : component * (ZT_DITHER_SIDE / 3);
+    zt_dither_line(codes, numbers, count, scale, dithered ? zt_dither_row(y + apart) : NULL);
+    if (c->depth <= 8 && c->step == 1)
+        for (int x = 0; x < count; x++) at[x] = (uint8_t)codes[x];
+    else if (c->depth <= 8)
+        for (int x = 0; x < count; x++, at += c->step) *at = (uint8_t)codes[x];
+    else if (p->layout->flags & AV_PIX_FMT_FLAG_BE)
+        for (int x = 0; x < count; x++, at += c->step) AV_WB16(at, codes[x]);
     else
+        for (int x = 0; x < count; x++, at += c->step) AV_WL16(at, codes[x]);
+}
+
+static void put_alpha(AVFrame *frame, const zt_video_pixels *p, int y, const float *pixels,
+                      lines *l) {
+    float most = (float)((1 << p->layout->comp[3].depth) - 1);
+    for (int x = 0; x < frame->width; x++) l->one[x] = zt_develop_cut(pixels[4 * x + 3]);
+    put_line(frame, p, y, 3, l->one, frame->width, most, l->codes);
+}
+
+static void put_rgb(AVFrame *frame, const zt_video_pixels *p, int y, lines *l) {
+    float most = (float)((1 << p->layout->comp[0].depth) - 1);
+    for (int c = 0; c < 3; c++) {
+        for (int x = 0; x < frame->width; x++) l->one[x] = l->shown[3 * x + c];
+        put_line(frame, p, y, c, l->one, frame->width, most, l->codes);
+    }
+}
+
+static void put_ycbcr(AVFrame *frame, const zt_video_pixels *p, int y, lines *l) {
+    int width = frame->width, row_count = 1 << p->layout->log2_chroma_h;
+    bool halved = p->layout->log2_chroma_w > 0;
+    float unit = (float)(1 << (p->layout->comp[0].depth - 8));
+    zt_video_luma(l->one, l->cb, l->cr, l->shown, width);
+    put_line(frame, p, y, 0, l->one, width, unit, l->codes);
+    for (int c = 1; (y + 1) % row_count == 0 && c < 3; c++) {
+        zt_video_chroma(l->one, c == 1 ? l->cb : l->cr, width, halved, row_count);
+        put_line(frame, p, y / row_count, c, l->one, halved ? width / 2 : width, unit,
+                 l->codes);
+    }
+}
+
+static void convert(AVFrame *frame, const zt_video_pixels *p, const zt_image *image, lines *l) {
+    for (int y = 0; y < image->height; y++) {
+        const float *pixels = image->pixels + (size_t)y * (size_t)image->width * 4;
+        zt_develop_row(l->shown, pixels, image->width, &p->how);
+        if (p->is_rgb)
+            put_rgb(frame, p, y, l);
+        else
+            put_ycbcr(frame, p, y, l);
+        if (p->has_alpha) put_alpha(frame, p, y, pixels, l);
+    }
+}
+
+zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *p,
+                                  const zt_image *image, const zt_video_ear *ear) {
+    lines l = {0};
+    zt_status status = make_frame(frame, image->width, image->height, p->pixels, ear);
+    if (status == ZT_OK && !make_lines(&l, image->width)) status = ZT_EMEMORY;
+    if (status == ZT_OK) {
+        convert(*frame, p, image, &l);
+        tag_frame(p, *frame);
+    } else {
         av_frame_free(frame);
+    }
+    free_lines(&l);
     return status;
 }
 

@@ -11,14 +11,18 @@
 
 typedef struct zt_video_pixels zt_video_pixels;
 
-/* For images of the format's size and frames of `pixels`. */
+/* For frames of `pixels`, by the format's view or its wish for a view of OpenColorIO. */
 zt_status zt_video_pixels_open(zt_video_pixels **converter, const zt_output_format *format,
                                enum AVPixelFormat pixels, const zt_video_ear *ear);
 void zt_video_pixels_close(zt_video_pixels **converter);
 
-/* A new frame, of the caller to free: developed by the view, converted, tagged. Formats with
- * alpha get the image's, and colours that are not multiplied by it; others are opaque. */
-zt_status zt_video_pixels_convert(AVFrame **frame, zt_video_pixels *converter,
+/* All that decides how an image's light becomes the numbers of a frame, as a text. */
+const char *zt_video_pixels_manner(const zt_video_pixels *converter);
+
+/* A new frame, of the caller to free: developed, converted, dithered, tagged. Formats with
+ * alpha get the image's, and colours that are not multiplied by it; others are opaque. From any
+ * thread, several at once. */
+zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *converter,
                                   const zt_image *image, const zt_video_ear *ear);
 
 /* The peak signal-to-noise ratio over all numbers of all components of `sent`, INFINITY where

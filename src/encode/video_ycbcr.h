@@ -1,14 +1,16 @@
-/* R'G'B' of 16 bits as Y'CbCr of more than 8. libswscale does this, too, but makes white 943 of
- * 10 bits instead of 940. */
+/* R'G'B' as Y'CbCr of ITU-R BT.709 in limited range, as numbers of steps of 8 bits. */
 #ifndef ZT_ENCODE_VIDEO_YCBCR_H
 #define ZT_ENCODE_VIDEO_YCBCR_H
 
-#include <libavutil/frame.h>
+#include <stdbool.h>
 
-/* Fills `frame`, planar Y'CbCr in little-endian 16 bits, from `rgb` of the same size, RGB48 or
- * RGBA64: BT.709, limited range, each number the nearest. A chroma sample is sited left in its
- * pair of pixels and is their mean and their neighbours', 1:2:1; of two rows it is the mean.
- * `scratch` has place for 2 * (width + 2) floats. */
-void zt_video_ycbcr(AVFrame *frame, const AVFrame *rgb, float *scratch);
+/* Of a row of `width` pixels, three numbers of 0..1 each: their luma, 16..235; and their
+ * chroma, -112..112, is added to the sums, each of which begins with a place before the first
+ * pixel and ends with one behind the last. */
+void zt_video_luma(float *luma, float *cb, float *cr, const float *shown, int width);
+
+/* The sums of `row_count` rows become a line of chroma, 16..240, and zero. `halved`: a number
+ * is sited left in its pair of pixels and is their mean and their neighbours', 1:2:1. */
+void zt_video_chroma(float *line, float *sums, int width, bool halved, int row_count);
 
 #endif

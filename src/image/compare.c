@@ -75,8 +75,9 @@ static zt_status compare_light(zt_difference *d, const zt_image *image,
 
 static uint8_t *develop(const zt_image *image, zt_view view, zt_arena *arena) {
     size_t stride = 3 * (size_t)image->width;
+    const zt_developing how = {.view = view};
     uint8_t *bytes = ZT_PUSH(arena, uint8_t, stride * (size_t)image->height);
-    if (bytes) zt_develop_rgb8(bytes, stride, image, view, 0, image->height);
+    if (bytes) zt_develop_8(bytes, stride, image, &how, 0, image->height);
     return bytes;
 }
 

@@ -1,28 +1,24 @@
-/* To 8 bits by a table, exactly. The top half of a float's bits (exponent and seven bits of the
- * mantissa) picks a bucket of 2^16 neighbouring floats; in each bucket at most one step from a
- * code to the next one lies, and the bucket knows where. The idea of the buckets is Fabian
- * Giesen's ("float->sRGB8", 2012), whose table interpolates; this one compares and so is never
- * off by one.
+/* A curve by chords: in each of 512 pieces of an octave it is a straight line. The top bits of
+ * a float (exponent and nine of the mantissa) are the piece, the others the place on it. The
+ * idea is Fabian Giesen's ("float->sRGB8", 2012).
  *
- * To 16 bits by chords, exactly: in each of 128 pieces of an octave a straight line tells the
- * code to within one, and the place where the next code begins settles it.
- *
- * Owns the curves of the views, and of each a table for 8 bits, 8 KB, and one for 16, 300 KB,
- * made at the first use of the view; the latter takes some 50 ms. */
+ * Owns the curves of the views, and the chords of each, 98 KB, made at the first use of the
+ * view. */
 #include "image/develop.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <threads.h>
 
 #include "base/wide.h"
+#include "image/dither.h"
 
-/* Below 2^-13 every view gives 0 of 255. From there to 8, above every view's white, are 16
- * octaves. */
-#define FLOOR_BITS UINT32_C(0x39000000)
+/* Below 2^-21 every view gives less than half of 1 / 65535. From there to 8, above every view's
+ * white, are 24 octaves. */
+#define FLOOR      0x1p-21F
+#define FLOOR_BITS UINT32_C(0x35000000)
 #define END_BITS   UINT32_C(0x41000000)
-enum { BUCKET_BITS = 16, BUCKET_COUNT = (END_BITS - FLOOR_BITS) >> BUCKET_BITS };
+enum { LOW_BITS = 14, CHORD_COUNT = (END_BITS - FLOOR_BITS) >> LOW_BITS };
 
 static double keep(double linear) { return linear; }
 
@@ -82,47 +78,35 @@ double zt_develop_value(double linear, zt_view view) {
     return linear < views[view].white ? views[view].curve(linear) : 1;
 }
 
-/* The bits of the last float below white, which has the highest code already. */
-static uint32_t last_bits(zt_view view) {
-    float white = (float)views[view].white;
-    if ((double)white >= views[view].white) white = nextafterf(white, 0);
-    uint32_t bits;
-    memcpy(&bits, &white, sizeof bits);
-    return bits;
-}
+/* A piece's begin, and what each of its floats adds. */
+typedef struct chord {
+    float begin, slope;
+} chord;
 
-/* (code << 16) + 2^16 - step: with the float's low 16 bits added, the carry is the step from
- * the bucket's first code to the next. Without a step, `step` is 2^16, and nothing carries. */
 typedef struct table {
-    uint32_t buckets[BUCKET_COUNT];
-    uint32_t last; /* last_bits() */
+    chord chords[CHORD_COUNT];
+    int32_t white_bits; /* of the first float that is white */
 } table;
 
 static table tables[ZT_VIEW_COUNT];
 
-static uint32_t exact_code(uint32_t bits, zt_view view) {
+static double value_at(uint32_t bits, zt_view view) {
     float value;
     memcpy(&value, &bits, sizeof value);
-    return (uint32_t)(255 * zt_develop_value((double)value, view) + 0.5);
+    return bits > FLOOR_BITS ? zt_develop_value((double)value, view) : 0;
 }
 
 static void make_table(zt_view view) {
-    tables[view].last = last_bits(view);
-    for (uint32_t b = 0; b < BUCKET_COUNT; b++) {
-        uint32_t first = FLOOR_BITS + (b << BUCKET_BITS);
-        uint32_t code = exact_code(first, view);
-        uint32_t low = 0, high = UINT32_C(1)
-                                 << BUCKET_BITS; /* low has the code, high has not */
-        if (exact_code(first + high - 1, view) == code) low = high - 1;
-        while (high - low > 1) {
-            uint32_t middle = (low + high) / 2;
-            if (exact_code(first + middle, view) == code)
-                low = middle;
-            else
-                high = middle;
-        }
-        assert(exact_code(first + (1 << BUCKET_BITS) - 1, view) <= code + 1);
-        tables[view].buckets[b] = (code << BUCKET_BITS) + (1 << BUCKET_BITS) - high;
+    table *t = &tables[view];
+    float white = (float)views[view].white;
+    if ((double)white < views[view].white) white = nextafterf(white, INFINITY);
+    memcpy(&t->white_bits, &white, sizeof white);
+    for (uint32_t c = 0; c < CHORD_COUNT; c++) {
+        uint32_t first = FLOOR_BITS + (c << LOW_BITS), last = first + (1 << LOW_BITS);
+        if (first < (uint32_t)t->white_bits && last > (uint32_t)t->white_bits)
+            last = (uint32_t)t->white_bits; /* the curve has a corner there */
+        double begin = value_at(first, view), rise = value_at(last, view) - begin;
+        t->chords[c] = (chord){(float)begin, (float)(rise / (last - first))};
     }
 }
 
@@ -131,135 +115,153 @@ static void make_srgb(void) { make_table(ZT_VIEW_SRGB); }
 static void make_rec709(void) { make_table(ZT_VIEW_REC709); }
 static void make_filmic(void) { make_table(ZT_VIEW_FILMIC); }
 
-/* The bits of numbers, cut to those of `floor` .. `last` and counted from the first. By itself,
- * this is a loop without branches, which becomes wide. */
-ZT_CLONES static void find_places(uint32_t *restrict places, const float *restrict numbers,
-                                  int count, float floor, uint32_t last) {
-    int32_t floor_bits;
-    memcpy(&floor_bits, &floor, sizeof floor_bits);
-    for (int i = 0; i < count; i++) {
-        float number = numbers[i] > floor ? numbers[i] : floor; /* NaN is not */
-        int32_t bits; /* of positive floats, in the same order as they */
-        memcpy(&bits, &number, sizeof bits);
-        bits = bits < (int32_t)last ? bits : (int32_t)last;
-        places[i] = (uint32_t)(bits - floor_bits);
-    }
-}
-
-static uint8_t code_at(const uint32_t *buckets, uint32_t place) {
-    return (uint8_t)((buckets[place >> BUCKET_BITS] + (place & 0xffff)) >> BUCKET_BITS);
-}
-
-enum { PIECE = 64 }; /* of a row at a time */
-
-static void develop_row(uint8_t *rgb, const float *pixels, int width, const table *table) {
-    uint32_t places[4 * PIECE] = {0};
-    for (int x = 0; x < width; x += PIECE) {
-        int count = width - x < PIECE ? width - x : PIECE;
-        find_places(places, pixels + 4 * (size_t)x, 4 * count, 0x1p-13f, table->last);
-        for (int i = 0; i < count; i++, rgb += 3)
-            for (int c = 0; c < 3; c++) rgb[c] = code_at(table->buckets, places[4 * i + c]);
-    }
-}
-
-void zt_develop_rgb8(uint8_t *bytes, size_t stride, const zt_image *image, zt_view view,
-                     int first, int last) {
+static const table *table_of(zt_view view) {
     static once_flag made[ZT_VIEW_COUNT] = {ONCE_FLAG_INIT, ONCE_FLAG_INIT, ONCE_FLAG_INIT,
                                             ONCE_FLAG_INIT};
     static void (*const make[ZT_VIEW_COUNT])(void) = {make_raw, make_srgb, make_rec709,
                                                       make_filmic};
     call_once(&made[view], make[view]);
-    for (int y = first; y < last; y++, bytes += stride)
-        develop_row(bytes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width,
-                    &tables[view]);
+    return &tables[view];
 }
 
-/* Below 2^-21 every view gives 0 of 65535. */
-#define DEEP_FLOOR_BITS UINT32_C(0x35000000)
-enum { DEEP_MAX = 65535, CHORD_COUNT = (END_BITS - DEEP_FLOOR_BITS) >> BUCKET_BITS };
-
-/* Of one view. A chord is the code at its piece's begin and what the piece adds, both times
- * 2^16 and a quarter of a code too low; so it tells the code, or the one before. */
-typedef struct deep_table {
-    struct {
-        uint32_t code, rise;
-    } chords[CHORD_COUNT];
-    uint32_t begins[DEEP_MAX + 2]; /* the first place of each code */
-    uint32_t last;                 /* last_bits() */
-} deep_table;
-
-static deep_table deep_tables[ZT_VIEW_COUNT];
-
-/* The exact code at a place, not yet rounded down. */
-static double deep_value(uint32_t place, zt_view view) {
-    uint32_t bits = DEEP_FLOOR_BITS + place;
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return DEEP_MAX * zt_develop_value((double)value, view) + 0.5;
-}
-
-static uint32_t deep_code_at(const deep_table *table, uint32_t place) {
-    uint32_t piece = place >> BUCKET_BITS, low = place & 0xffff;
-    uint32_t code = table->chords[piece].code +
-                    (uint32_t)((uint64_t)table->chords[piece].rise * low >> BUCKET_BITS);
-    code >>= BUCKET_BITS;
-    return code + (place >= table->begins[code + 1]);
-}
-
-static void make_deep_table(zt_view view) {
-    deep_table *table = &deep_tables[view];
-    uint32_t code = 0, piece_size = UINT32_C(1) << BUCKET_BITS;
-    table->last = last_bits(view);
-    uint32_t end_place = table->last - DEEP_FLOOR_BITS;
-    for (uint32_t p = 0; p <= end_place >> BUCKET_BITS; p++) {
-        uint32_t first = p << BUCKET_BITS, last = first + piece_size - 1;
-        if (last > end_place) last = end_place; /* the curve has a corner at white */
-        double begin = deep_value(first, view), end = deep_value(last, view);
-        double low = begin < 0.25 ? 0 : begin - 0.25;
-        table->chords[p].code = (uint32_t)(low * piece_size);
-        table->chords[p].rise =
-            (uint32_t)((end - begin) * piece_size / (last - first + 1) * piece_size);
-        for (; code < (uint32_t)end; code++) { /* where the next code begins, by halving */
-            uint32_t before = first > 0 ? first - 1 : 0, after = last;
-            if (code > 0 && table->begins[code] > first) before = table->begins[code];
-            while (after - before > 1) {
-                uint32_t middle = before + (after - before) / 2;
-                if ((uint32_t)deep_value(middle, view) > code)
-                    after = middle;
-                else
-                    before = middle;
-            }
-            table->begins[code + 1] = after;
-        }
+/* The bits of numbers, cut to those of FLOOR .. white and counted from the first. By itself, as
+ * on_chords(), this is a loop without branches, which becomes wide; what is between them does
+ * not, and is short. */
+ZT_CLONES static void find_places(int32_t *restrict places, const float *restrict numbers,
+                                  int count, int32_t white_bits) {
+    for (int i = 0; i < count; i++) {
+        float number = numbers[i] > FLOOR ? numbers[i] : FLOOR; /* NaN is not */
+        int32_t bits; /* of positive floats, in the same order as they */
+        memcpy(&bits, &number, sizeof bits);
+        bits = bits < white_bits ? bits : white_bits;
+        places[i] = bits - (int32_t)FLOOR_BITS;
     }
-    table->begins[DEEP_MAX + 1] = UINT32_MAX;
 }
 
-static void make_deep_raw(void) { make_deep_table(ZT_VIEW_RAW); }
-static void make_deep_srgb(void) { make_deep_table(ZT_VIEW_SRGB); }
-static void make_deep_rec709(void) { make_deep_table(ZT_VIEW_REC709); }
-static void make_deep_filmic(void) { make_deep_table(ZT_VIEW_FILMIC); }
+ZT_CLONES static void on_chords(float *restrict shown, const int32_t *restrict places,
+                                const chord *restrict chords, int count) {
+    for (int i = 0; i < count; i++)
+        shown[i] =
+            chords[i].begin + chords[i].slope * (float)(places[i] & ((1 << LOW_BITS) - 1));
+}
 
-static void develop_deep_row(uint16_t *rgb, const float *pixels, int width,
-                             const deep_table *table) {
-    uint32_t places[4 * PIECE] = {0};
+enum { PIECE = ZT_DITHER_SIDE }; /* of a row at a time */
+
+/* A piece of a row through a view. */
+static void develop_piece(float *shown, const float *pixels, int width, const table *table) {
+    int32_t all[4 * PIECE], places[3 * PIECE];
+    chord chords[3 * PIECE];
+    find_places(all, pixels, 4 * width, table->white_bits);
+    for (int x = 0; x < width; x++)
+        for (int c = 0; c < 3; c++) {
+            int32_t place = places[3 * x + c] = all[4 * x + c];
+            chords[3 * x + c] = table->chords[place >> LOW_BITS];
+        }
+    on_chords(shown, places, chords, 3 * width);
+}
+
+/* Colours as they are where a pixel is covered. */
+static const float *divide(float *divided, const float *pixels, int width) {
+    for (int x = 0; x < width; x++, pixels += 4)
+        for (int c = 0; c < 4; c++) {
+            bool some = c < 3 && pixels[3] > 0;
+            divided[4 * x + c] = some ? pixels[c] / pixels[3] : pixels[c];
+        }
+    return divided;
+}
+
+/* Displays of OpenColorIO may give anything. */
+static void apply_color(float *shown, int width, const zt_color *color) {
+    color->apply(color, shown, width);
+    for (int i = 0; i < 3 * width; i++) shown[i] = zt_develop_cut(shown[i]);
+}
+
+void zt_develop_row(float *shown, const float *pixels, int width, const zt_developing *how) {
+    const table *table = how->color ? NULL : table_of(how->view);
+    float divided[4 * PIECE];
     for (int x = 0; x < width; x += PIECE) {
         int count = width - x < PIECE ? width - x : PIECE;
-        find_places(places, pixels + 4 * (size_t)x, 4 * count, 0x1p-21f, table->last);
-        for (int i = 0; i < count; i++, rgb += 3)
-            for (int c = 0; c < 3; c++)
-                rgb[c] = (uint16_t)deep_code_at(table, places[4 * i + c]);
+        float *to = shown + 3 * (size_t)x;
+        const float *from = pixels + 4 * (size_t)x;
+        if (how->alpha == ZT_ALPHA_DIVIDED) from = divide(divided, from, count);
+        if (table)
+            develop_piece(to, from, count, table);
+        else
+            for (int i = 0; i < 3 * count; i++) to[i] = from[i / 3 * 4 + i % 3];
+    }
+    if (how->color) apply_color(shown, width, how->color);
+}
+
+ZT_CLONES static void dither(uint8_t *restrict bytes, const float *restrict shown,
+                             const uint8_t *restrict thresholds, int count) {
+    for (int i = 0; i < count; i++)
+        bytes[i] = (uint8_t)zt_dither_code(255 * shown[i], thresholds[i]);
+}
+
+ZT_CLONES static void round_16(uint16_t *restrict values, const float *restrict shown,
+                               int count) {
+    for (int i = 0; i < count; i++) values[i] = (uint16_t)(int32_t)(65535 * shown[i] + 0.5F);
+}
+
+enum { ROOM = 16 * PIECE }; /* pixels that are developed at a time */
+
+/* A piece's codes of three and its A become four. */
+static void put_8(uint8_t *bytes, const uint8_t *codes, const float *pixels, int width) {
+    for (int x = 0; x < width; x++, pixels += 4, bytes += 4, codes += 3) {
+        memcpy(bytes, codes, 3);
+        bytes[3] = (uint8_t)(255 * zt_develop_cut(pixels[3]) + 0.5F);
     }
 }
 
-void zt_develop_rgb16(uint16_t *values, size_t stride, const zt_image *image, zt_view view,
-                      int first, int last) {
-    static once_flag made[ZT_VIEW_COUNT] = {ONCE_FLAG_INIT, ONCE_FLAG_INIT, ONCE_FLAG_INIT,
-                                            ONCE_FLAG_INIT};
-    static void (*const make[ZT_VIEW_COUNT])(void) = {make_deep_raw, make_deep_srgb,
-                                                      make_deep_rec709, make_deep_filmic};
-    call_once(&made[view], make[view]);
+static void develop_row_8(uint8_t *bytes, const float *pixels, int width,
+                          const zt_developing *how, const uint8_t *thresholds) {
+    float shown[3 * ROOM];
+    uint8_t codes[3 * PIECE];
+    bool alpha = how->alpha != ZT_ALPHA_LEFT_OUT;
+    for (int x = 0; x < width; x += PIECE, pixels += 4 * PIECE) {
+        int count = width - x < PIECE ? width - x : PIECE;
+        if (x % ROOM == 0)
+            zt_develop_row(shown, pixels, width - x < ROOM ? width - x : ROOM, how);
+        dither(alpha ? codes : bytes, shown + 3 * (x % ROOM), thresholds, 3 * count);
+        if (alpha) put_8(bytes, codes, pixels, count);
+        bytes += (alpha ? 4 : 3) * count;
+    }
+}
+
+void zt_develop_8(uint8_t *bytes, size_t stride, const zt_image *image,
+                  const zt_developing *how, int first, int last) {
+    uint8_t thresholds[3 * PIECE]; /* one for the colours of a pixel, so that grey stays grey */
+    for (int y = first; y < last; y++, bytes += stride) {
+        for (int i = 0; i < 3 * PIECE; i++) thresholds[i] = zt_dither_row(y)[i / 3];
+        develop_row_8(bytes, image->pixels + (size_t)y * (size_t)image->width * 4, image->width,
+                      how, thresholds);
+    }
+}
+
+static void put_16(uint16_t *values, const uint16_t *codes, const float *pixels, int width) {
+    for (int x = 0; x < width; x++, pixels += 4, values += 4, codes += 3) {
+        memcpy(values, codes, 3 * sizeof *codes);
+        values[3] = (uint16_t)(65535 * zt_develop_cut(pixels[3]) + 0.5F);
+    }
+}
+
+static void develop_row_16(uint16_t *values, const float *pixels, int width,
+                           const zt_developing *how) {
+    float shown[3 * ROOM];
+    uint16_t codes[3 * ROOM];
+    bool alpha = how->alpha != ZT_ALPHA_LEFT_OUT;
+    for (int x = 0; x < width; x += ROOM, pixels += 4 * ROOM) {
+        int count = width - x < ROOM ? width - x : ROOM;
+        zt_develop_row(shown, pixels, count, how);
+        round_16(alpha ? codes : values, shown, 3 * count);
+        if (alpha) put_16(values, codes, pixels, count);
+        values += (alpha ? 4 : 3) * count;
+    }
+}
+
+void zt_develop_16(uint16_t *values, size_t stride, const zt_image *image,
+                   const zt_developing *how, int first, int last) {
     for (int y = first; y < last; y++, values += stride / sizeof *values)
-        develop_deep_row(values, image->pixels + (size_t)y * (size_t)image->width * 4,
-                         image->width, &deep_tables[view]);
+        develop_row_16(values, image->pixels + (size_t)y * (size_t)image->width * 4,
+                       image->width, how);
 }

@@ -37,51 +37,20 @@ void round_bits(std::vector<uint16_t> &values, unsigned bits) {
     }
 }
 
-/* Colours divided by A, where there is any. */
-std::vector<float> divided(const zt_image *image) {
-    size_t value_count = size_t(image->width) * size_t(image->height) * 4;
-    std::vector<float> pixels(image->pixels, image->pixels + value_count);
-    for (size_t i = 0; i < value_count; i += 4)
-        for (size_t c = 0; c < 3 && pixels[i + 3] > 0; c++) pixels[i + c] /= pixels[i + 3];
-    return pixels;
-}
-
-/* Puts A behind each three developed values. It is a share, which no view changes. */
-template <typename Value>
-std::vector<Value> with_alpha(const std::vector<Value> &colours, const zt_image *image,
-                              Value most) {
-    std::vector<Value> values(colours.size() / 3 * 4);
-    for (size_t i = 0; i < values.size(); i++) {
-        float alpha = image->pixels[i]; /* where i % 4 is 3 */
-        values[i] = i % 4 < 3      ? colours[i / 4 * 3 + i % 4]
-                    : !(alpha > 0) ? Value(0)
-                    : alpha >= 1   ? most
-                                   : Value(double(alpha) * most + 0.5);
-    }
-    return values;
-}
-
-bool write_integers(OIIO::ImageOutput &output, const zt_image *given, zt_view view) {
+bool write_integers(OIIO::ImageOutput &output, const zt_image *image, zt_developing how) {
     const OIIO::ImageSpec &spec = output.spec();
-    zt_image image = *given;
-    std::vector<float> pixels;
-    bool alpha = spec.nchannels == 4;
-    if (alpha && spec.get_int_attribute("oiio:UnassociatedAlpha")) {
-        pixels = divided(given);
-        image.pixels = pixels.data();
-    }
-    size_t row_values = size_t(image.width) * 3,
-           value_count = size_t(image.height) * row_values;
+    if (spec.nchannels == 4)
+        how.alpha =
+            spec.get_int_attribute("oiio:UnassociatedAlpha") ? ZT_ALPHA_DIVIDED : ZT_ALPHA_KEPT;
+    size_t row_values = size_t(image->width) * size_t(spec.nchannels),
+           value_count = size_t(image->height) * row_values;
     if (spec.format == OIIO::TypeDesc::UINT8) {
         std::vector<uint8_t> values(value_count);
-        zt_develop_rgb8(values.data(), row_values, &image, view, 0, image.height);
-        if (alpha) values = with_alpha<uint8_t>(values, given, 255);
+        zt_develop_8(values.data(), row_values, image, &how, 0, image->height);
         return output.write_image(spec.format, values.data());
     }
     std::vector<uint16_t> values(value_count);
-    zt_develop_rgb16(values.data(), row_values * sizeof(uint16_t), &image, view, 0,
-                     image.height);
-    if (alpha) values = with_alpha<uint16_t>(values, given, 65535);
+    zt_develop_16(values.data(), row_values * sizeof(uint16_t), image, &how, 0, image->height);
     int bits = spec.get_int_attribute("oiio:BitsPerSample", 16);
     if (bits < 16) round_bits(values, unsigned(bits));
     return output.write_image(spec.format, values.data());
@@ -116,14 +85,14 @@ bool write_floats(OIIO::ImageOutput &output, const zt_image *image, const Part &
     return output.write_image(OIIO::TypeDesc::UNKNOWN, bytes.data());
 }
 
-bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, zt_view view,
+bool write_pixels(OIIO::ImageOutput &output, const zt_image *image, const zt_developing &how,
                   const Part &part) {
     bool integers =
         part.spec.format == OIIO::TypeDesc::UINT8 || part.spec.format == OIIO::TypeDesc::UINT16;
-    return integers ? write_integers(output, image, view) : write_floats(output, image, part);
+    return integers ? write_integers(output, image, how) : write_floats(output, image, part);
 }
 
-bool write_parts(OIIO::ImageOutput &output, const zt_image *image, zt_view view,
+bool write_parts(OIIO::ImageOutput &output, const zt_image *image, const zt_developing &how,
                  const std::vector<Part> &parts, const char *path) {
     std::vector<OIIO::ImageSpec> specs;
     for (const Part &part : parts) specs.push_back(part.spec);
@@ -133,18 +102,18 @@ bool write_parts(OIIO::ImageOutput &output, const zt_image *image, zt_view view,
     for (size_t p = 0; p < parts.size(); p++) {
         if (p > 0 && !output.open(path, specs[p], OIIO::ImageOutput::AppendSubimage))
             return false;
-        if (!write_pixels(output, image, view, parts[p])) return false;
+        if (!write_pixels(output, image, how, parts[p])) return false;
     }
     return output.close();
 }
 
 /* OpenImageIO 2.4 writes several parts only to what has a name: to a file in memory. */
-bool write_named(Bytes &bytes, OIIO::ImageOutput &output, const zt_image *image, zt_view view,
-                 const std::vector<Part> &parts) {
+bool write_named(Bytes &bytes, OIIO::ImageOutput &output, const zt_image *image,
+                 const zt_developing &how, const std::vector<Part> &parts) {
     int file = memfd_create("parts", MFD_CLOEXEC);
     if (file < 0) return false;
     struct stat written;
-    bool good = write_parts(output, image, view, parts,
+    bool good = write_parts(output, image, how, parts,
                             ("/proc/self/fd/" + std::to_string(file)).c_str()) &&
                 fstat(file, &written) == 0;
     if (good) bytes.resize(size_t(written.st_size));
@@ -162,6 +131,7 @@ zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
     std::vector<Part> parts;
     zt_status status = zt::make_parts(parts, image, wishes);
     if (status != ZT_OK) return status;
+    const zt_developing how = {view, wishes->color, ZT_ALPHA_LEFT_OUT};
     Bytes bytes;
     OIIO::Filesystem::IOVecOutput memory(
         bytes); /* outlives `output`, which may write at its end */
@@ -169,8 +139,8 @@ zt_status encode(zt_bytes *made, const zt_image *image, zt_view view,
         OIIO::ImageOutput::create(wishes->format->endings[0] + 1);
     if (!output) return zt::refuse(listener, "write", path, OIIO::geterror());
     if (!(parts.size() > 1
-              ? write_named(bytes, *output, image, view, parts)
-              : output->set_ioproxy(&memory) && write_parts(*output, image, view, parts, path)))
+              ? write_named(bytes, *output, image, how, parts)
+              : output->set_ioproxy(&memory) && write_parts(*output, image, how, parts, path)))
         return zt::refuse(listener, "write", path, output->geterror());
     made->data = static_cast<unsigned char *>(malloc(bytes.size()));
     if (!made->data) return ZT_EMEMORY;
@@ -195,4 +165,4 @@ zt_status read_guarded(zt_image **image, const char *path, const zt_bytes *bytes
 
 } // namespace
 
-ZT_MODULE_DOOR(zt_image_file_door, image_file) = {encode_guarded, read_guarded};
+ZT_MODULE_DOOR(zt_image_file_door, image_file) = {encode_guarded, read_guarded, zt::open_color};

@@ -61,6 +61,7 @@ typedef struct zt_image_file_door {
                         const zt_image_wishes *wishes, const char *path, zt_listener listener);
     zt_status (*read)(zt_image **image, const char *path, const zt_bytes *bytes,
                       zt_listener listener); /* of the bytes, where they are not NULL */
+    zt_status (*open_color)(zt_color **color, const zt_color_wish *wish, zt_listener listener);
 } zt_image_file_door;
 
 #ifdef __cplusplus

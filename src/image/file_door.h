@@ -69,5 +69,8 @@ zt_status make_parts(std::vector<Part> &parts, const zt_image *image,
 /* Reads a file, or `bytes` where that is not NULL; see zt_image_file_read(). */
 zt_status read(zt_image **image, const char *path, const zt_bytes *bytes, zt_listener listener);
 
+/* zt_color_open() of what is wished for. No exception leaves it. */
+zt_status open_color(zt_color **color, const zt_color_wish *wish, zt_listener listener);
+
 } // namespace zt
 #endif

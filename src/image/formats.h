@@ -7,6 +7,8 @@
 #include <zoetrope/status.h>
 #include <zoetrope/wish.h>
 
+#include "image/color.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -45,6 +47,7 @@ typedef struct zt_image_wishes {
     const zt_compression *compression; /* NULL where there is none to choose */
     int level;                         /* of the compression; 0 where it has none */
     int tile;                          /* pixels, the side of a tile; 0: rows */
+    const zt_color *color;             /* that integers are developed by; NULL: by a view */
     bool parts;                        /* each layer (image/layers.h) is a part of its own */
     const char *layer;                 /* the one that is written, or NULL: all of them */
 } zt_image_wishes;

@@ -98,7 +98,8 @@ static double likeness(const char *name, const zt_image *image) {
     must_be(fseek(file, -size, SEEK_END) == 0 && fread(other, (size_t)size, 1, file) == 1,
             "a peer's picture cannot be read");
     fclose(file);
-    zt_develop_rgb8(own, (size_t)3 * WIDTH, image, ZT_VIEW_RAW, 0, HEIGHT);
+    const zt_developing raw = {.view = ZT_VIEW_RAW};
+    zt_develop_8(own, (size_t)3 * WIDTH, image, &raw, 0, HEIGHT);
     double sum = 0;
     for (long i = 0; i < size; i++) sum += (own[i] - other[i]) * (own[i] - other[i]);
     free(own);

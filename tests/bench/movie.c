@@ -84,7 +84,8 @@ static void write_frames(const zt_animation *animation) {
     must_be(file && bytes, "no file for raw frames");
     for (int64_t i = 0; i < zt_animation_film(animation)->frame_count; i++) {
         frames_run(&f);
-        zt_develop_rgb8(bytes, row, f.image, ZT_VIEW_RAW, 0, f.image->height);
+        zt_develop_8(bytes, row, f.image, &(zt_developing){.view = ZT_VIEW_RAW}, 0,
+                     f.image->height);
         must_be(fwrite(bytes, 1, size, file) == size, "cannot write raw frames");
     }
     must_be(fclose(file) == 0, "cannot write raw frames");
