@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-enum { SCENE_OBJECTS_MAX = 2048, SCENE_LIGHTS_MAX = 8, SCENE_MATERIALS_MAX = 8 };
+enum { SCENE_OBJECTS_MAX = 2048, SCENE_LIGHTS_MAX = 64, SCENE_MATERIALS_MAX = 8 };
 
 typedef struct test_scene {
     zt_scene scene;

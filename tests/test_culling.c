@@ -211,8 +211,11 @@ static zt_tracer *prepare(const zt_exposure *exposure, zt_meshes *meshes, zt_are
     zt_tracer *tracer;
     zt_extent *extents;
     int32_t count;
-    assert_int_equal(
-        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, exposure, meshes, arena), ZT_OK);
+    zt_needs needs;
+    assert_int_equal(zt_needs_find(&needs, exposure, false, arena), ZT_OK);
+    assert_int_equal(ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, exposure, &needs,
+                                              false, meshes, arena),
+                     ZT_OK);
     assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }

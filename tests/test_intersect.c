@@ -191,8 +191,11 @@ static const zt_tracer *prepare(const zt_scene *scene, zt_meshes *meshes, zt_are
     zt_extent *extents;
     int32_t count;
     zt_exposure exposure = zt_exposure_of(scene);
-    assert_int_equal(
-        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, &exposure, meshes, arena), ZT_OK);
+    zt_needs needs;
+    assert_int_equal(zt_needs_find(&needs, &exposure, false, arena), ZT_OK);
+    assert_int_equal(ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, &exposure, &needs,
+                                              false, meshes, arena),
+                     ZT_OK);
     assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }

@@ -312,9 +312,7 @@ zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job
         const zt_render_count *own = &work->threads[i].count;
         count->left_out += own->left_out;
         count->samples += own->samples;
-        count->rays.primary += own->rays.primary;
-        count->rays.shadow += own->rays.shadow;
-        count->rays.mirror += own->rays.mirror;
+        zt_ray_counts_add(&count->rays, &own->rays);
     }
     return status;
 }

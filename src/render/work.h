@@ -60,9 +60,7 @@ static inline void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count)
     own->light.counts = (zt_ray_counts){0};
     job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
     own->count.samples += count;
-    own->count.rays.primary += own->light.counts.primary;
-    own->count.rays.shadow += own->light.counts.shadow;
-    own->count.rays.mirror += own->light.counts.mirror;
+    zt_ray_counts_add(&own->count.rays, &own->light.counts);
 }
 
 /* Whether somebody asked to stop. */

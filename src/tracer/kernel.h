@@ -11,7 +11,7 @@
 #include <zoetrope/status.h>
 
 #include "base/arena.h"
-#include "scene/exposure.h"
+#include "scene/needs.h"
 #include "tracer/accuracy.h"
 #include "tracer/meshes.h"
 
@@ -40,10 +40,22 @@ typedef struct zt_rays {
     struct zt_footprint *footprint;
 } zt_rays;
 
-/* How many rays of each kind were traced. */
+/* How many rays of each kind were traced; and how many were not, of all that there are where
+ * from each point one goes to each lamp and, up to the scene's depth, a mirrored one goes on.
+ */
 typedef struct zt_ray_counts {
     int64_t primary, shadow, mirror;
+    int64_t primary_avoided, shadow_avoided, mirror_avoided;
 } zt_ray_counts;
+
+static inline void zt_ray_counts_add(zt_ray_counts *sum, const zt_ray_counts *counts) {
+    sum->primary += counts->primary;
+    sum->shadow += counts->shadow;
+    sum->mirror += counts->mirror;
+    sum->primary_avoided += counts->primary_avoided;
+    sum->shadow_avoided += counts->shadow_avoided;
+    sum->mirror_avoided += counts->mirror_avoided;
+}
 
 /* Linear light for each ray. */
 typedef struct zt_radiance {
@@ -100,13 +112,15 @@ typedef struct zt_ready {
     zt_precision precision; /* not ZT_PRECISION_AUTO */
     zt_accuracy
         accuracy; /* what asks for double; FINE where nobody asked (double was wanted) */
-    bool moves;   /* something moves while the shutter is open, the camera left aside */
-    bool random;  /* there are lamps with a size: light is a mean over random numbers */
+    zt_needs needs;
+    bool moves;  /* something moves while the shutter is open, the camera left aside */
+    bool random; /* there are lamps with a size: light is a mean over random numbers */
 } zt_ready;
 
 /* Prepares an exposure for a picture. Space is relative to the camera of the first moment.
  * The kernel is the one for the widest instructions that this machine has, or that the
- * environment variable ZOETROPE_ISA names: scalar, base, avx2 or avx512. */
+ * environment variable ZOETROPE_ISA names: scalar, base, avx2 or avx512. Where the environment
+ * variable ZOETROPE_EVERYTHING is 1 nothing is left out that changes nothing. */
 zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
                             zt_precision precision, zt_pixel pixel, zt_meshes *meshes,
                             zt_arena *arena);

@@ -179,6 +179,9 @@ static zt_hash rest_of(const zt_tracer *tracer) {
     put(&n, sizeof(real));
     put(&n, (double)tracer->tie);
     put(&n, scene->reflection_depth);
+    put(&n, tracer->reflection_depth);
+    put(&n, tracer->faint_depth);
+    if (tracer->faint_depth < scene->reflection_depth) put(&n, (double)tracer->brightest);
     put(&n, tracer->crowd != NULL);
     put(&n, tracer->lamp_count);
     zt_hash rest = hash_of(&n);

@@ -191,6 +191,7 @@ static zt_bvh_box outside(const zt_primitive *p, real crowd_size) {
 
 zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
                                           zt_arena *arena) {
+    if (!tracer->everything) ZT_TRY(ZT_REAL_NAME(zt_prepare_reach)(tracer, arena));
     size_t count = (size_t)tracer->primitive_count;
     int32_t *single = ZT_PUSH(arena, int32_t, count), *crowd = ZT_PUSH(arena, int32_t, count);
     if (!single || !crowd) return ZT_EMEMORY;
@@ -241,8 +242,8 @@ static bool lights_move(const zt_tracer *tracer) {
 }
 
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t *extent_count,
-                                   const zt_exposure *exposure, zt_meshes *meshes,
-                                   zt_arena *arena) {
+                                   const zt_exposure *exposure, const zt_needs *needs,
+                                   bool everything, zt_meshes *meshes, zt_arena *arena) {
     const zt_scene *scene = exposure->moments;
     size_t count = (size_t)scene->object_count;
     zt_tracer *tracer = ZT_PUSH(arena, zt_tracer, 1);
@@ -260,10 +261,14 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
     }
     zt_course course;
     ZT_TRY(ZT_REAL_NAME(zt_course_make)(&course, exposure, arena));
-    *tracer = (zt_tracer){.reflection_depth = scene->reflection_depth,
+    *tracer = (zt_tracer){.reflection_depth = needs->mirror_depth,
+                          .asked_depth = scene->reflection_depth,
+                          .brightest = (real)(needs->brightest * (1 + 0x1p-10)),
+                          .faint_depth = needs->faint_depth,
+                          .everything = everything,
                           .exposure = exposure,
                           .straight = exposure->moment_count == 2};
-    ZT_TRY(ZT_REAL_NAME(zt_prepare_lamps)(tracer, exposure, arena));
+    ZT_TRY(ZT_REAL_NAME(zt_prepare_lamps)(tracer, exposure, needs, arena));
     ZT_TRY(prepare_objects(&all, tracer, &course, meshes));
     tracer->moves |= lights_move(tracer);
     if (tracer->moves) ZT_TRY(zt_exposure_index(&tracer->moment_at, exposure, arena));

@@ -8,7 +8,8 @@
  * are degenerate have nothing to hit and are left out. */
 zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
                                    int32_t *extent_count, const zt_exposure *exposure,
-                                   zt_meshes *meshes, zt_arena *arena);
+                                   const zt_needs *needs, bool everything, zt_meshes *meshes,
+                                   zt_arena *arena);
 
 /* Tells what those who send rays must know of a tracer. */
 void ZT_REAL_NAME(zt_prepare_ready)(zt_ready *ready, const zt_tracer *tracer);
@@ -20,6 +21,9 @@ zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
 
 /* The part of it that is the lamps. */
 zt_status ZT_REAL_NAME(zt_prepare_lamps)(zt_tracer *tracer, const zt_exposure *exposure,
-                                         zt_arena *arena);
+                                         const zt_needs *needs, zt_arena *arena);
+
+/* What is known of lamps and of what may be in their way before any batch is. */
+zt_status ZT_REAL_NAME(zt_prepare_reach)(zt_tracer *tracer, zt_arena *arena);
 
 #endif

@@ -45,7 +45,8 @@ static bool same_light(const zt_light *a, const zt_light *b) {
 }
 
 /* Makes light number i a lamp; `poses` is room for one at each moment. */
-static zt_lamp lamp_of(const zt_exposure *exposure, int32_t i, zt_lamp_pose *poses) {
+static zt_lamp lamp_of(const zt_exposure *exposure, const zt_needs *needs, int32_t i,
+                       zt_lamp_pose *poses) {
     static const zt_lamp_kind kinds[] = {[ZT_LIGHT_POINT] = ZT_LAMP_BALL,
                                          [ZT_LIGHT_DISK] = ZT_LAMP_DISK,
                                          [ZT_LIGHT_RECTANGLE] = ZT_LAMP_RECTANGLE};
@@ -55,6 +56,7 @@ static zt_lamp lamp_of(const zt_exposure *exposure, int32_t i, zt_lamp_pose *pos
     const real3 none = {REAL_INFINITY, REAL_INFINITY, REAL_INFINITY};
     zt_lamp lamp = {.kind = kinds[first->kind],
                     .light = i,
+                    .shines = needs->shines[i],
                     .poses = poses,
                     .bounds = {none, {-none.x, -none.y, -none.z}}};
     for (int32_t m = 0; m < exposure->moment_count; m++) {
@@ -94,7 +96,7 @@ static zt_status prepare_ambient(zt_tracer *tracer, const zt_exposure *exposure,
 }
 
 zt_status ZT_REAL_NAME(zt_prepare_lamps)(zt_tracer *tracer, const zt_exposure *exposure,
-                                         zt_arena *arena) {
+                                         const zt_needs *needs, zt_arena *arena) {
     const zt_scene *scene = exposure->moments;
     size_t count = (size_t)scene->light_count, moment_count = (size_t)exposure->moment_count;
     zt_lamp *lamps = ZT_PUSH(arena, zt_lamp, count);
@@ -103,7 +105,7 @@ zt_status ZT_REAL_NAME(zt_prepare_lamps)(zt_tracer *tracer, const zt_exposure *e
     for (int32_t i = 0; i < scene->light_count; i++)
         if (scene->lights[i].kind != ZT_LIGHT_AMBIENT)
             lamps[tracer->lamp_count++] =
-                lamp_of(exposure, i, poses + (size_t)i * moment_count);
+                lamp_of(exposure, needs, i, poses + (size_t)i * moment_count);
     tracer->lamps = lamps;
     return prepare_ambient(tracer, exposure, arena);
 }

@@ -52,7 +52,8 @@ typedef struct zt_lamp {
     int32_t light; /* its index in the scene */
     bool moves;    /* its poses, one at each moment of the exposure, are not all the same */
     bool has_size; /* at some moment: random numbers say where on it rays go */
-    bool shadows;  /* at some moment */
+    bool shines;   /* at some moment */
+    bool shadows;  /* likewise */
     const zt_lamp_pose *poses;
     zt_box bounds; /* around it at all times, roundings included; of a point its place */
 } zt_lamp;
@@ -97,6 +98,21 @@ static inline zt_placed_mesh zt_placed_at(const zt_placed_mesh *m, int32_t momen
     return now;
 }
 
+/* So many things at most are asked whether they are in the way. Where lamps are fewer than so
+ * many, asking costs as much as their rays do. */
+enum { ZT_BLOCKERS_MAX = 32, ZT_REACH_LAMPS = 4 };
+
+/* Made with the tracer: bounds of the lamps as a structure of arrays, lamp_count of each and up
+ * to a whole group of lanes more that mean nothing; and what may be in their way: things that
+ * stand still and are convex. */
+typedef struct zt_reach {
+    const real *low_x, *low_y, *low_z, *high_x, *high_y, *high_z;
+    const int32_t *shines;             /* whether it does at some moment */
+    const int32_t *shadows;            /* whether all of its rays are shadow rays */
+    int32_t blockers[ZT_BLOCKERS_MAX]; /* primitives; the largest first */
+    int32_t blocker_count;
+} zt_reach;
+
 /* What of a primitive's looks changes (tracer/motion.h). */
 typedef struct zt_change zt_change;
 
@@ -114,9 +130,14 @@ struct zt_tracer {
     const zt_weave *weaves;
     const zt_lamp *lamps; /* the lights that are somewhere, in order */
     int32_t lamp_count;
-    real3 ambient;         /* the sum of the ambient lights */
-    const real3 *ambients; /* at each moment of the exposure; NULL where it stays the same */
-    int32_t reflection_depth;
+    const zt_reach *reach;    /* NULL where lamps are few, or everything is to be done */
+    real3 ambient;            /* the sum of the ambient lights */
+    const real3 *ambients;    /* at each moment of the exposure; NULL where it stays the same */
+    int32_t reflection_depth; /* beyond which nothing can change any more */
+    int32_t asked_depth;      /* the scene's own */
+    real brightest;           /* no point's light is more, in any channel */
+    int32_t faint_depth;      /* from which on light may be too faint to count */
+    bool everything;          /* nothing is left out, so that what is can be compared */
     real tie; /* TIE where things lie on each other, so that the first object's hit counts; or 0
                */
     bool has_solids, has_patterns;
