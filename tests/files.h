@@ -18,7 +18,8 @@
 #include <zoetrope/image.h>
 #include <zoetrope/status.h>
 
-/* What a listener heard: how many errors, and the last one. */
+/* What a listener heard: how many errors, and the last one; before the first, what was said
+ * last. */
 typedef struct heard {
     int error_count;
     char text[2048];
@@ -27,7 +28,8 @@ typedef struct heard {
 static inline void hear(void *user, const zt_message *message) {
     heard *h = user;
     if (message->severity == ZT_ERROR) h->error_count++;
-    snprintf(h->text, sizeof h->text, "%s", message->text);
+    if (message->severity == ZT_ERROR || h->error_count == 0)
+        snprintf(h->text, sizeof h->text, "%s", message->text);
 }
 
 static inline zt_listener listener_of(heard *h) {

@@ -99,7 +99,7 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
     ZT_TRY(zt_settings_of_frame(&m->settings, r, m->order, frame));
     ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
     ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
-    m->last->info = (zt_image_info){.known = !m->order->forgets,
+    m->last->info = (zt_image_info){.known = true,
                                     .frame = frame,
                                     .rate = r->format.rate,
                                     .key = key,
@@ -129,8 +129,8 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
 static zt_status make_image(making *m, int64_t position) {
     int64_t frame = m->frames.numbers[position], before = m->last ? m->last->info.frame : -1;
     zt_hash *key = &m->keys[position];
-    if (!m->planned && !m->order->forgets) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
-    bool equal = m->last && !m->timed && !m->order->forgets && same(m->last->info.key, *key);
+    if (!m->planned) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
+    bool equal = m->last && !m->timed && same(m->last->info.key, *key);
     const zt_image *kept = m->again && !equal ? zt_again_find(m->again, position) : NULL;
     if (!equal) {
         if (m->last) zt_outway_release(m->way, m->last);
