@@ -21,6 +21,36 @@ static void views(void **state) {
     assert_int_equal(film_of_words(", view: filmic").view, ZT_VIEW_FILMIC);
 }
 
+/* A view of OpenColorIO is wished for by what is said of it, and a file is beside the
+ * description.
+ */
+static void assert_color(const char *words, bool wished, const char *config,
+                         const char *display, const char *view) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "zoetrope: 1\nfilm: { duration: 1 s%s }\ncamera: { position: [0, 0, 5] }\n",
+             words);
+    zt_animation *animation = animation_of(text);
+    zt_color_wish color = zt_animation_film(animation)->color;
+    const char *found[3] = {color.config, color.display, color.view},
+               *expected[3] = {config, display, view};
+    assert_int_equal(color.wished, wished);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(found[i] != NULL, expected[i] != NULL);
+        if (expected[i]) assert_string_equal(found[i], expected[i]);
+    }
+    zt_animation_free(&animation);
+}
+
+static void colors(void **state) {
+    (void)state;
+    assert_color("", false, NULL, NULL, NULL);
+    assert_color(", color: {}", true, NULL, NULL, NULL);
+    assert_color(", color: { config: /a/b.ocio, display: sRGB, view: Film 2 }", true,
+                 "/a/b.ocio", "sRGB", "Film 2");
+    assert_color(", color: { view: Film }", true, NULL, NULL, "Film");
+}
+
 /* Shares of the time from one frame to the next: a turn is all of it. */
 static void shutter(void **state) {
     (void)state;
@@ -197,9 +227,13 @@ static void audio(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views),     cmocka_unit_test(shutter),
-        cmocka_unit_test(samples),   cmocka_unit_test(filters_and_seeds),
-        cmocka_unit_test(overrides), cmocka_unit_test(what_a_frame_shows),
+        cmocka_unit_test(views),
+        cmocka_unit_test(colors),
+        cmocka_unit_test(shutter),
+        cmocka_unit_test(samples),
+        cmocka_unit_test(filters_and_seeds),
+        cmocka_unit_test(overrides),
+        cmocka_unit_test(what_a_frame_shows),
         cmocka_unit_test(audio),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);

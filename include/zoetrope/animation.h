@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <zoetrope/color.h>
 #include <zoetrope/image.h>
 #include <zoetrope/rate.h>
 #include <zoetrope/sampling.h>
@@ -31,6 +32,7 @@ typedef struct zt_film {
     zt_rate rate;
     int64_t frame_count; /* at least 1 */
     zt_view view;
+    zt_color_wish color; /* counts instead of the view; its texts are the animation's own */
     zt_sampling sampling;
     bool transparent; /* A is how much of a pixel is covered; else 1 everywhere */
     zt_shutter shutter;

@@ -100,7 +100,13 @@ static void print_film(const zt_film *film) {
     printf("frames     %" PRId64 " (0 to %" PRId64 ")\n", film->frame_count,
            film->frame_count - 1);
     printf("duration   %.6g s\n", zt_rate_time(film->rate, film->frame_count));
-    printf("view       %s\n", zt_view_name(film->view));
+    if (film->color.wished)
+        printf("view       %s, %s of %s\n",
+               film->color.display ? film->color.display : "the usual display",
+               film->color.view ? film->color.view : "its usual view",
+               film->color.config ? film->color.config : "$OCIO");
+    else
+        printf("view       %s\n", zt_view_name(film->view));
     if (film->sampling.min == film->sampling.max)
         printf("samples    %d a pixel\n", film->sampling.max);
     else

@@ -200,24 +200,55 @@ static void read_aovs(unsigned *aovs, zt_mistakes *mistakes, const zt_node *node
         read_aov(aovs, mistakes, node->items[i]);
 }
 
-/* Whether the file is one with sound is for the output to say. */
-static zt_status read_audio(zt_reading *reading, const zt_node *node, const char *directory) {
-    const char *name = zt_read_text(&reading->mistakes, node, "audio");
+/* A file's name, beside the description where it is not from the root. NULL where it is none,
+ * which is told. Whether the file is there and of use is for those to say who need it. */
+static zt_status read_path(const char **path, zt_reading *reading, const zt_node *node,
+                           const char *what, const char *directory) {
+    *path = NULL;
+    const char *name = zt_read_text(&reading->mistakes, node, what);
     if (!name) return ZT_OK;
     if (*name == '/') directory = "";
     size_t directory_length = strlen(directory), length = directory_length + strlen(name);
-    char *path = ZT_PUSH(&reading->animation->arena, char, length + 1);
-    if (!path) return ZT_EMEMORY;
-    memcpy(path, directory, directory_length);
-    memcpy(path + directory_length, name, length - directory_length + 1);
-    reading->animation->film.audio = path;
+    char *whole = ZT_PUSH(&reading->animation->arena, char, length + 1);
+    if (!whole) return ZT_EMEMORY;
+    memcpy(whole, directory, directory_length);
+    memcpy(whole + directory_length, name, length - directory_length + 1);
+    *path = whole;
     return ZT_OK;
+}
+
+static zt_status read_name(const char **name, zt_reading *reading, const zt_node *node,
+                           const char *what) {
+    const char *text = zt_read_text(&reading->mistakes, node, what);
+    if (!text) return ZT_OK;
+    *name = zt_arena_push_text(&reading->animation->arena, text, strlen(text));
+    return *name ? ZT_OK : ZT_EMEMORY;
+}
+
+/* "color: { config: studio.ocio, display: sRGB, view: Film }", each of them or none. */
+static zt_status read_color(zt_reading *reading, const zt_node *node, const zt_node *film_view,
+                            const char *directory) {
+    static const char *const names[] = {"config", "display", "view"};
+    zt_color_wish *color = &reading->animation->film.color;
+    zt_mistakes *mistakes = &reading->mistakes;
+    zt_fields fields;
+    if (!zt_fields_open(&fields, mistakes, node, "color", names, COUNT(names))) return ZT_OK;
+    const zt_node *config = zt_field(&fields, "config"),
+                  *display = zt_field(&fields, "display"), *view = zt_field(&fields, "view");
+    if (film_view) {
+        zt_mistake(mistakes, &node->place, "a film has \"view\" or \"color\", not both");
+        zt_mistake_note(mistakes, &film_view->place, "\"view\" stands here");
+    }
+    color->wished = true;
+    if (config) ZT_TRY(read_path(&color->config, reading, config, "config", directory));
+    if (display) ZT_TRY(read_name(&color->display, reading, display, "display"));
+    return view ? read_name(&color->view, reading, view, "view") : ZT_OK;
 }
 
 zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *directory) {
     static const char *const names[] = {
-        "size",   "rate",    "duration", "view",    "shading", "reflections", "samples",
-        "filter", "quality", "seed",     "shutter", "audio",   "aovs",        "background"};
+        "size",    "rate", "duration", "view",  "shading", "reflections", "samples", "filter",
+        "quality", "seed", "shutter",  "audio", "aovs",    "background",  "color"};
     const char *views[ZT_VIEW_COUNT];
     for (int v = 0; v < ZT_VIEW_COUNT; v++) views[v] = zt_view_name((zt_view)v);
     static const char *const shadings[] = {"classic"};
@@ -233,7 +264,8 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
                   *reflections = zt_field(&fields, "reflections"),
                   *shutter = zt_field(&fields, "shutter"), *audio = zt_field(&fields, "audio"),
                   *aovs = zt_field(&fields, "aovs"),
-                  *background = zt_field(&fields, "background");
+                  *background = zt_field(&fields, "background"),
+                  *color = zt_field(&fields, "color");
     int choice;
     int64_t number;
     if (size) read_size(film, mistakes, size);
@@ -252,7 +284,8 @@ zt_status zt_film_read(zt_reading *reading, const zt_node *node, const char *dir
                                      COUNT(backgrounds)))
         film->transparent = choice == 1;
     read_sampling(&film->sampling, mistakes, &fields);
-    return audio ? read_audio(reading, audio, directory) : ZT_OK;
+    if (color) ZT_TRY(read_color(reading, color, view, directory));
+    return audio ? read_path(&film->audio, reading, audio, "audio", directory) : ZT_OK;
 }
 
 void zt_film_rest(zt_animation *animation) {

@@ -26,7 +26,8 @@ struct Color : zt_color {
     std::string text;
 };
 
-zt_status refuse_config(zt_listener listener, const std::string &config, const std::string &why) {
+zt_status refuse_config(zt_listener listener, const std::string &config,
+                        const std::string &why) {
     zt_tell(listener, ZT_ERROR, "cannot use the colour configuration %s: %s", config.c_str(),
             why.empty() ? "OpenColorIO does not say why" : why.c_str());
     return ZT_EFILE;
@@ -34,7 +35,7 @@ zt_status refuse_config(zt_listener listener, const std::string &config, const s
 
 /* Finds a name among those there are; the first of them is not always the usual one. */
 zt_status choose(std::string &chosen, const char *wished, const char *usual, const Names &names,
-                 const std::string &what, zt_listener listener) {
+                 const char *what, const std::string &of, zt_listener listener) {
     chosen = wished ? wished : usual ? usual : "";
     zt_nearest nearest = zt_nearest_to(chosen.c_str());
     std::string list;
@@ -43,19 +44,20 @@ zt_status choose(std::string &chosen, const char *wished, const char *usual, con
         zt_nearest_try(&nearest, name.c_str());
         list += (list.empty() ? "" : ", ") + name;
     }
-    std::string hint = nearest.best ? std::string("; did you mean \"") + nearest.best + "\"?" : "";
-    zt_tell(listener, ZT_ERROR, "the colour configuration has no %s \"%s\"%s; there is: %s",
-            what.c_str(), chosen.c_str(), hint.c_str(), list.empty() ? "none" : list.c_str());
+    std::string hint =
+        nearest.best ? std::string("; did you mean \"") + nearest.best + "\"?" : ".";
+    zt_tell(listener, ZT_ERROR, "the colour configuration has no %s \"%s\"%s%s There is: %s",
+            what, chosen.c_str(), of.c_str(), hint.c_str(),
+            list.empty() ? "none" : list.c_str());
     return ZT_EARGUMENT;
 }
 
 /* The space of linear Rec. 709 by the names that configurations give it; where none is known,
  * the one in which scenes are rendered. */
 std::string space_of_light(const OIIO::ColorConfig &config) {
-    static const char *const spaces[] = {"lin_rec709",       "Linear Rec.709 (sRGB)",
-                                         "lin_rec709_scene", "lin_rec709_srgb",
-                                         "lin_srgb",         "Utility - Linear - sRGB",
-                                         "Utility - Linear - Rec.709"};
+    static const char *const spaces[] = {
+        "lin_rec709", "Linear Rec.709 (sRGB)",   "lin_rec709_scene",          "lin_rec709_srgb",
+        "lin_srgb",   "Utility - Linear - sRGB", "Utility - Linear - Rec.709"};
     const Names names = config.getColorSpaceNames();
     for (const char *space : spaces)
         for (const std::string &name : names) {
@@ -74,8 +76,8 @@ void apply(const zt_color *color, float *pixels, int count) {
 
 void close(zt_color *color) { delete static_cast<Color *>(color); }
 
-/* What becomes of colours all over the range: a lattice of them, and a ramp of greys. So look-up
- * tables in files of their own count, too. */
+/* What becomes of colours all over the range: a lattice of them, and a ramp of greys. So
+ * look-up tables in files of their own count, too. */
 std::vector<float> samples_of(const zt_color *color) {
     enum { SIDE = 18, GREY_COUNT = 4096 };
     std::vector<float> samples;
@@ -104,16 +106,18 @@ zt_status open(zt_color **out, const zt_color_wish *wish, zt_listener listener) 
                 "no colour configuration: \"color\" names none, and $OCIO is not set");
         return ZT_EARGUMENT;
     }
-    if (!OIIO::Filesystem::is_regular(path) || !OIIO::Filesystem::read_text_file(path, contents))
+    if (!OIIO::Filesystem::is_regular(path) ||
+        !OIIO::Filesystem::read_text_file(path, contents))
         return refuse_config(listener, path, "the file cannot be read");
     OIIO::ColorConfig config(path);
     if (config.has_error()) return refuse_config(listener, path, config.geterror());
     std::string display, view;
     zt_status status = choose(display, wish->display, config.getDefaultDisplayName(),
-                              config.getDisplayNames(), "display", listener);
+                              config.getDisplayNames(), "display", "", listener);
     if (status == ZT_OK)
         status = choose(view, wish->view, config.getDefaultViewName(display),
-                        config.getViewNames(display), "view of \"" + display + "\"", listener);
+                        config.getViewNames(display), "view",
+                        " of the display \"" + display + "\"", listener);
     if (status != ZT_OK) return status;
     std::unique_ptr<Color> color(new Color);
     color->processor = config.createDisplayTransform(display, view, space_of_light(config));

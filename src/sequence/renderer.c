@@ -52,7 +52,8 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     r->format = (zt_output_format){.width = settings->width ? settings->width : film->width,
                                    .height = settings->height ? settings->height : film->height,
                                    .rate = film->rate,
-                                   .view = film->view};
+                                   .view = film->view,
+                                   .color = film->color};
     r->checks_reuse = settings->check_reuse;
     zt_status status =
         open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
