@@ -42,6 +42,7 @@ set(header_ladder sequence)
 set(header_manifest sequence)
 set(header_replay sequence)
 set(header_reproduce sequence)
+set(header_stats sequence)
 set(header_zoetrope cli)
 
 # Each foreign header, by the beginning of its name, and its one door: a pattern, where that has

@@ -21,6 +21,7 @@
 #include <zoetrope/renderer.h>
 #include <zoetrope/replay.h>
 #include <zoetrope/reproduce.h>
+#include <zoetrope/stats.h>
 #include <zoetrope/status.h>
 
 #define ZT_VERSION "0.1.0"

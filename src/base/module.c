@@ -18,3 +18,11 @@ const void *zt_module_door(const char *name, const char *needed_by, zt_listener 
                 file, dlerror());
     return door;
 }
+
+bool zt_module_is_loaded(const char *name) {
+    char file[64];
+    snprintf(file, sizeof file, "zoetrope-%s.so", name);
+    void *module = dlopen(file, RTLD_NOW | RTLD_NOLOAD);
+    if (module) dlclose(module);
+    return module != NULL;
+}

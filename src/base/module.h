@@ -8,6 +8,8 @@
 #ifndef ZT_BASE_MODULE_H
 #define ZT_BASE_MODULE_H
 
+#include <stdbool.h>
+
 #include <zoetrope/status.h>
 
 /* The table of calls of the module `name`, which is the file zoetrope-<name>.so in a directory
@@ -15,6 +17,9 @@
  * several threads at once. NULL where it cannot be had: what is missing, and that `needed_by`
  * ("expressions") needs it, is then told. */
 const void *zt_module_door(const char *name, const char *needed_by, zt_listener listener);
+
+/* Whether something has needed it so far. */
+bool zt_module_is_loaded(const char *name);
 
 #ifdef __cplusplus
 #define ZT_MODULE_C extern "C"

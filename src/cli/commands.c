@@ -11,7 +11,7 @@
      BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO) | BIT(VIEW))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(OVERWRITE) | BIT(SIZE) | BIT(SAMPLES) |              \
-     BIT(THREADS) | BIT(PRECISION))
+     BIT(THREADS) | BIT(PRECISION) | BIT(STATS))
 #define FINISHED                                                                               \
     (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
      BIT(MANIFEST) | BIT(AOVS))
@@ -44,7 +44,7 @@ const zt_command_row zt_commands[ZT_COMMAND_COUNT] = {
     [ZT_COMMAND_EXPLAIN] = {"explain", "FILE [NAME@TIME]", 1, 1,
                             "Tells what a property does at a frame, and why: "
                             "ball.center@37; or what is chosen for frames",
-                            NULL, NULL, ANYWHERE | BIT(FRAMES)},
+                            NULL, NULL, ANYWHERE | BIT(FRAMES) | BIT(FRAME)},
     [ZT_COMMAND_CURVES] = {"curves", "FILE [NAME...]", 1, INT_MAX,
                            "Plots properties over time, or all that move: ball.center",
                            "output/NAME.curves.svg", drawings,
@@ -107,6 +107,7 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                            "instead of one a core; the images stay the same"},
     [ZT_OPTION_PRECISION] = {"precision", 0, "double",
                              "or single, of all rays, instead of what each frame asks for"},
+    [ZT_OPTION_STATS] = {"stats", 0, NULL, "print in the end what was traced and what was not"},
     [ZT_OPTION_NO_REUSE] = {"no-reuse", 0, NULL,
                             "copy nothing from the frame before, where it stays the same"},
     [ZT_OPTION_CHECK_REUSE] = {"check-reuse", 0, NULL,

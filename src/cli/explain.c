@@ -140,11 +140,37 @@ static void print_frames(int64_t first, int64_t last, const zt_frame_choices *ch
     if (*choices->motion_text) printf("%*s%s\n", indent, "", choices->motion_text);
 }
 
+/* ---- what frames need -----------------------------------------------------------------------
+ */
+
+static void print_sentence(void *user, const char *sentence) {
+    printf("%*s%s\n", *(const int *)user, "", sentence);
+}
+
+/* Runs of frames that show the same: of each the first alone is rendered. */
+static zt_status print_held(zt_renderer *renderer, int64_t first, int64_t last) {
+    zt_hash held, key;
+    zt_status status = zt_renderer_key(&held, renderer, first);
+    int64_t since = first;
+    for (int64_t frame = first + 1; frame <= last + 1 && status == ZT_OK; frame++) {
+        if (frame <= last) status = zt_renderer_key(&key, renderer, frame);
+        if (status != ZT_OK) break;
+        if (frame <= last && key.low == held.low && key.high == held.high) continue;
+        if (frame - since > 1)
+            printf("frames %" PRId64 " to %" PRId64 " hold still: rendered once\n", since,
+                   frame - 1);
+        since = frame;
+        held = key;
+    }
+    return status;
+}
+
 zt_status zt_explain_frames(const zt_animation *animation, int64_t first, int64_t last,
                             zt_report *report) {
     zt_render_settings settings = {0};
     zt_renderer *renderer;
     zt_frame_choices told, next;
+    const int64_t from = first;
     zt_status status =
         zt_renderer_open(&renderer, animation, &settings, zt_report_listener(report));
     if (status == ZT_OK) status = zt_renderer_choices(&told, renderer, first);
@@ -157,6 +183,11 @@ zt_status zt_explain_frames(const zt_animation *animation, int64_t first, int64_
     }
     if (status == ZT_OK) {
         print_frames(first, last, &told);
+        int indent = printf("frame %" PRId64 " needs\n", from) > 0 ? 4 : 0;
+        status = zt_renderer_needs(renderer, from, print_sentence, &indent);
+    }
+    if (status == ZT_OK) status = print_held(renderer, from, last);
+    if (status == ZT_OK) {
         status = zt_report_finish(report);
     }
     zt_renderer_close(&renderer);

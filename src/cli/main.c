@@ -21,6 +21,7 @@
 #include "cli/replay.h"
 #include "cli/report.h"
 #include "cli/reproduce.h"
+#include "cli/stats.h"
 
 enum {
     EXIT_MISTAKES = 1,
@@ -140,7 +141,10 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
     zt_film_result result = {0};
     listen_for_interrupts();
     zt_progress progress = zt_progress_begin(report, frames->count);
+    struct timespec begun, ended;
+    clock_gettime(CLOCK_MONOTONIC, &begun);
     zt_status status = render_film(&result, renderer, &order, options, audio, &progress);
+    clock_gettime(CLOCK_MONOTONIC, &ended);
     if (result.kept > 0)
         zt_report_say(report, ZT_NOTE, "%" PRId64 " of %" PRId64 " frames were there already",
                       result.kept, result.count);
@@ -150,6 +154,10 @@ static zt_status write_frames(zt_renderer *renderer, const zt_options *options,
                       result.verified, result.verified == 1 ? "is" : "are");
     if (status == ZT_OK && result.count > 0) zt_progress_end(&progress, target);
     if (status == ZT_ESTOPPED) say_interrupted(&progress, target);
+    if (options->stats)
+        zt_stats_print(renderer, &result,
+                       (double)(ended.tv_sec - begun.tv_sec) +
+                           1e-9 * (double)(ended.tv_nsec - begun.tv_nsec));
     return status;
 }
 

@@ -270,13 +270,16 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
                *time = values[ZT_OPTION_TIME], *frame_time = values[ZT_OPTION_TIME_PER_FRAME],
                *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE],
                *chunk = values[ZT_OPTION_CHUNK], *rate = values[ZT_OPTION_RATE],
-               *verify = values[ZT_OPTION_VERIFY], *aovs = values[ZT_OPTION_AOVS];
+               *verify = values[ZT_OPTION_VERIFY], *aovs = values[ZT_OPTION_AOVS],
+               *frame =
+                   command == &zt_commands[ZT_COMMAND_EXPLAIN] ? values[ZT_OPTION_FRAME] : NULL;
     zt_render_settings *settings = &options->settings;
     options->target = values[ZT_OPTION_OUTPUT];
     options->quiet = values[ZT_OPTION_QUIET] != NULL;
     options->manifest = values[ZT_OPTION_MANIFEST];
     options->frame_list = values[ZT_OPTION_FRAME];
     options->overwrites = values[ZT_OPTION_OVERWRITE] != NULL;
+    options->stats = values[ZT_OPTION_STATS] != NULL;
     settings->no_reuse = values[ZT_OPTION_NO_REUSE] != NULL;
     settings->check_reuse = values[ZT_OPTION_CHECK_REUSE] != NULL;
     options->replays = values[ZT_OPTION_PIXEL] != NULL;
@@ -290,6 +293,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
            (!pixel || zt_value_pixel(&options->column, &options->row, pixel, report)) &&
            (!sample || zt_value_sample(&options->sample, sample, report)) &&
            (!frames || read_frames(options, frames, report)) &&
+           (!frame || read_frame(options, frame, report)) &&
            (!chunk || zt_value_part(&options->part, &options->part_count, chunk, report)) &&
            (!verify ||
             zt_value_count(&options->verify, ZT_OPTION_VERIFY, verify, VERIFY_MAX, report)) &&

@@ -23,6 +23,7 @@ typedef struct zt_options {
     const char *frame_list;        /* as zt_frames_read takes it, not yet read; or NULL */
     int64_t part, part_count;      /* of the frames, as zt_film_order has it; 0: all */
     bool overwrites;               /* what is there, instead of going on with it */
+    bool stats;                    /* are printed in the end */
     bool filters;                  /* of report: each of them */
     const char *const *properties; /* of curves: property_count names, none for all */
     int property_count;

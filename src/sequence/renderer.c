@@ -173,6 +173,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     r->cost.rays = count.rays;
     r->cost.tiles = count.tiles;
     r->cost.tiles_copied = count.tiles_copied;
+    zt_renderer_count(r);
     if (count.left_out > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",

@@ -3,6 +3,7 @@
 #define ZT_SEQUENCE_RENDERER_H
 
 #include <zoetrope/renderer.h>
+#include <zoetrope/stats.h>
 
 #include "base/arena.h"
 #include "base/pool.h"
@@ -35,6 +36,7 @@ struct zt_renderer {
     zt_render_work *work;
     zt_reuse *reuse; /* of the frame before; NULL: nothing is copied */
     bool checks_reuse;
+    zt_stats stats;     /* of all frames */
     zt_frame_cost cost; /* of the last frame; and its camera's, as zt_image_info has them */
     double world_to_camera[16], world_to_ndc[16];
     const struct zt_manifest
@@ -67,6 +69,9 @@ zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t 
  * and copies nothing. */
 zt_status zt_renderer_take(zt_renderer *renderer, int64_t frame, zt_image *image,
                            const zt_watcher *watcher);
+
+/* Adds the cost of the last frame to those of all. */
+void zt_renderer_count(zt_renderer *renderer);
 
 /* Says what was chosen for a frame that is ready, and why. */
 void zt_renderer_say(zt_frame_choices *choices, const zt_renderer *renderer,

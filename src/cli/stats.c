@@ -1,0 +1,73 @@
+#include "cli/stats.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+enum { LABEL_WIDTH = 14 };
+
+/* A number with its digits in threes. */
+static void print_number(int64_t number) {
+    char digits[32];
+    int length = snprintf(digits, sizeof digits, "%" PRId64, number);
+    for (int i = 0; i < length; i++) {
+        putchar(digits[i]);
+        if ((length - i) % 3 == 1 && i + 1 < length) putchar(',');
+    }
+}
+
+static void print_share(int64_t part, int64_t whole) {
+    if (whole > 0) printf(" (%.3g %%)", 100. * (double)part / (double)whole);
+}
+
+static void print_rays(const char *label, zt_ray_stats rays) {
+    printf("%-*s ", LABEL_WIDTH, label);
+    print_number(rays.traced);
+    fputs(" traced, ", stdout);
+    print_number(rays.avoided);
+    fputs(" avoided", stdout);
+    print_share(rays.avoided, rays.traced + rays.avoided);
+    putchar('\n');
+}
+
+static void print_frames(const zt_film_result *r) {
+    printf("%-*s %" PRId64 " rendered", LABEL_WIDTH, "frames", r->rendered);
+    if (r->held > 0) printf(", %" PRId64 " held: the same as another one", r->held);
+    if (r->kept > 0) printf(", %" PRId64 " there already", r->kept);
+    putchar('\n');
+}
+
+static void print_libraries(void) {
+    zt_library libraries[ZT_LIBRARY_COUNT];
+    zt_libraries(libraries);
+    for (int loaded = 1; loaded >= 0; loaded--) {
+        const char *before = loaded ? "libraries" : "not loaded";
+        int count = 0;
+        for (int i = 0; i < ZT_LIBRARY_COUNT; i++) {
+            if (libraries[i].loaded != loaded) continue;
+            if (count++ == 0)
+                printf("%-*s ", LABEL_WIDTH, before);
+            else
+                fputs(", ", stdout);
+            printf("%s (%s)", libraries[i].name, libraries[i].what);
+        }
+        if (count > 0) putchar('\n');
+    }
+}
+
+void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, double wall_s) {
+    zt_stats s = zt_renderer_stats(renderer);
+    print_frames(result);
+    print_rays("primary rays", s.primary);
+    print_rays("shadow rays", s.shadow);
+    print_rays("mirrored rays", s.mirror);
+    printf("%-*s ", LABEL_WIDTH, "tiles");
+    print_number(s.copied_tiles);
+    fputs(" copied of ", stdout);
+    print_number(s.tiles);
+    print_share(s.copied_tiles, s.tiles);
+    putchar('\n');
+    print_libraries();
+    double stages_s = s.freeze_s + s.prepare_s + s.render_s;
+    printf("%-*s freeze %.3g s, prepare %.3g s, render %.3g s, all else %.3g s\n", LABEL_WIDTH,
+           "time", s.freeze_s, s.prepare_s, s.render_s, wall_s - stages_s);
+}
