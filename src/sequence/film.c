@@ -83,9 +83,14 @@ static zt_status note_record(void *user, const zt_output_record *record) {
     return zt_notes_add(&m->notes, &line);
 }
 
-/* Of images the output tells later, when they are complete. */
-static zt_status note_frame(making *m, const zt_manifest_frame *made) {
-    if ((m->still && m->remembers) || !(m->remembers || m->timed)) return ZT_OK;
+/* An image goes out: its checksum is known from here on. Of images of their own the output
+ * tells later, when they are complete. From any thread. */
+static zt_status note_image(void *user, const zt_image *image) {
+    making *m = user;
+    if (!m->remembers && !m->timed) return ZT_OK;
+    zt_manifest_frame *made = made_of(m, image->info.frame);
+    made->pixels = zt_verify_checksum(image);
+    if (m->still && m->remembers) return ZT_OK;
     return zt_notes_add(&m->notes, &(zt_manifest_line){.kind = ZT_LINE_FRAME, .frame = *made});
 }
 
@@ -112,7 +117,6 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
     memcpy(m->last->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
     memcpy(m->last->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
     made->key = key;
-    made->pixels = zt_verify_checksum(m->last);
     made->render_s = r->cost.freeze_s + r->cost.prepare_s + r->cost.render_s;
     if (m->timed) {
         made->min = sampling.min;
@@ -127,7 +131,7 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
 
 /* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */
 static zt_status make_image(making *m, int64_t position) {
-    int64_t frame = m->frames.numbers[position], before = m->last ? m->last->info.frame : -1;
+    int64_t frame = m->frames.numbers[position];
     zt_hash *key = &m->keys[position];
     if (!m->planned) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
     bool equal = m->last && !m->timed && same(m->last->info.key, *key);
@@ -139,22 +143,19 @@ static zt_status make_image(making *m, int64_t position) {
     }
     if (!equal && !kept) return render_image(m, frame, *key);
     if (kept) zt_again_copy(m->last, kept);
-    if (kept) before = kept->info.frame;
     zt_manifest_frame *made = made_of(m, frame);
-    *made = *made_of(m, before);
-    made->frame = frame;
+    made->key = *key;
+    made->render_s = made_of(m, m->last->info.frame)->render_s;
     m->result->held++;
     return ZT_OK;
 }
 
 static zt_status make_and_send(making *m, int64_t position) {
-    int64_t frame = m->frames.numbers[position];
     ZT_TRY(make_image(m, position));
     zt_image_info info = m->last->info;
-    info.frame = frame;
+    info.frame = m->frames.numbers[position];
     ZT_TRY(zt_outway_send(m->way, m->last, &info));
-    if (m->again) ZT_TRY(zt_again_keep(m->again, position, m->last));
-    return note_frame(m, made_of(m, frame));
+    return m->again ? zt_again_keep(m->again, position, m->last) : ZT_OK;
 }
 
 static zt_status make_all(making *m) {
@@ -172,6 +173,7 @@ static zt_status render_wanted(making *m) {
     if (m->planned) ZT_TRY(zt_again_open(&m->again, m->keys, m->wanted, m->frames.count));
     ZT_TRY(zt_outway_open(&m->way, m->output, r->format.width, r->format.height, r->aovs,
                           zt_pool_thread_count(r->pool)));
+    zt_outway_show(m->way, note_image, m);
     zt_status status = make_all(m);
     if (m->last) zt_outway_release(m->way, m->last);
     zt_status written = zt_outway_close(&m->way); /* waits for what is still being written */

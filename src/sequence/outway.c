@@ -38,6 +38,8 @@ struct zt_outway {
     cnd_t came; /* for workers: a parcel, or the end */
     cnd_t went; /* for those who lend and send */
     zt_output *output;
+    zt_status (*look)(void *user, const zt_image *image); /* NULL: nobody does */
+    void *user;
     int width, height;
     unsigned aovs;
     int capacity; /* of the ring, and of images */
@@ -77,7 +79,9 @@ static void make_next(zt_outway *way) {
         zt_image image = *next->slot->image;
         image.info = next->info;
         void *made = NULL;
-        zt_status status = zt_output_make(&made, way->output, &image, image.info.frame);
+        zt_status status = way->look ? way->look(way->user, &image) : ZT_OK;
+        if (status == ZT_OK)
+            status = zt_output_make(&made, way->output, &image, image.info.frame);
         mtx_lock(&way->mutex);
         if (status == ZT_OK)
             next->made = made;
@@ -173,6 +177,12 @@ zt_status zt_outway_open(zt_outway **out, zt_output *output, int width, int heig
     else
         zt_outway_close(&way);
     return status;
+}
+
+void zt_outway_show(zt_outway *way, zt_status (*look)(void *user, const zt_image *image),
+                    void *user) {
+    way->look = look;
+    way->user = user;
 }
 
 /* A slot nobody holds, with or without an image, those with one first; or NULL. */

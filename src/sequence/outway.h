@@ -14,6 +14,11 @@ typedef struct zt_outway zt_outway;
 zt_status zt_outway_open(zt_outway **way, zt_output *output, int width, int height,
                          unsigned aovs, int thread_count);
 
+/* Has `look` see each image that will be sent, with what is said of it, from any thread, before
+ * it is made ready; where it fails, so does the image. Before the first one is sent. */
+void zt_outway_show(zt_outway *way, zt_status (*look)(void *user, const zt_image *image),
+                    void *user);
+
 /* Lends an image to be filled, whose contents mean nothing; waits while too many are under way:
  * thread_count + 2, those that the caller keeps counted. Fails with what failed since. The
  * caller releases it, once, sent or not. */
