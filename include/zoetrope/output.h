@@ -32,8 +32,9 @@ typedef struct zt_output_record {
     int64_t count; /* of frames; 1 of an image */
     zt_hash key;   /* of what decides the bytes: all of its frames' keys, and how they are
                       written */
-    int64_t bytes; /* the size of the file; of a piece, where it ends in the file that grows */
-    zt_hash checksum; /* of the file; of a piece, of what is in it */
+    int64_t bytes; /* the size of the file, or files; of a piece, where it ends in the file that
+                      grows */
+    zt_hash checksum; /* of the file, or files; of a piece, of what is in it */
     double render_s;  /* seconds of wall time that its frames took to render, added up */
     const char *file; /* of an image: its file, for readers: nothing is opened by it. NULL:
                          none, or not known */
@@ -67,6 +68,7 @@ typedef struct zt_output_format {
      * once the output is open. */
     const char *settings;    /* as in zt_image_info, but for what is each frame's own */
     const char *description; /* the name of its file */
+    unsigned aovs;           /* bits of zt_aov that images have, for the {layer} of a target */
 } zt_output_format;
 
 /* A wish for how an output is written. All know, and leave out where they cannot hold it,
@@ -89,6 +91,12 @@ typedef struct zt_output_format {
  */
 typedef zt_wish zt_output_option;
 
+/* Puts names into the places that a target has for them, {name} and {camera}; {layer}, of which
+ * images know, stays. What of a name would lead elsewhere or be a place itself becomes "_". The
+ * caller frees the path. ZT_EARGUMENT for another place, told; ZT_EMEMORY. */
+zt_status zt_output_target(char **path, const char *target, const char *name,
+                           const char *camera, zt_listener listener);
+
 /* Opens an output, chosen by the name of `target`. `options` end with one whose name is NULL,
  * and may be NULL; of two with one name the later counts.
  *
@@ -96,6 +104,8 @@ typedef zt_wish zt_output_option;
  * .apng.
  * - frames.####.png, frames.%04d.exr, frames.@@@@.tif: numbered images, also .tif .tiff .jpg
  * .jpeg; one # for each digit, and more digits where the number needs them.
+ * - {layer}.####.exr, shots/{layer}/####.exr: of each frame a file for colours, "rgba", and one
+ * for each layer of format->aovs: "depth", "P", "N", ...; "id" has all that begin with it.
  * - image.png: one image; a second one is refused.
  * - film.hash: a line for each frame, with its number, its size, and the XXH3 128-bit checksum
  * of its float pixels, in fixed columns.

@@ -10,15 +10,13 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "encode/aside.h"
+#include "encode/names.h"
 #include "encode/sink.h"
 #include "image/file.h"
 
-enum { DIGITS_MAX = 20 };
-
 typedef struct stills {
-    char *before,
-        *after; /* the target around the place of the number; `after` NULL: no place */
-    int digits; /* the least that are written */
+    char *target;
+    zt_names names;
     bool single_written;
     zt_view view;
     zt_image_wishes wishes;
@@ -32,17 +30,18 @@ typedef struct stills {
 
 /* An image that is ready to be written. */
 typedef struct still {
-    zt_bytes bytes;
     zt_hash key;      /* of the record; zero: not known */
-    zt_hash checksum; /* of the bytes, where there is a plan */
+    zt_hash checksum; /* of the files, where there is a plan */
     double render_s;
+    int64_t size; /* of all files together */
+    zt_bytes files[];
 } still;
 
 static zt_status close_stills(void *state, bool keep) {
     (void)keep; /* each image was completed as it came */
     stills *images = state;
-    free(images->before);
-    free(images->after);
+    zt_names_free(&images->names);
+    free(images->target);
     free(images->records);
     free(images->manner);
     zt_color_close(&images->color);
@@ -50,79 +49,41 @@ static zt_status close_stills(void *state, bool keep) {
     return ZT_OK;
 }
 
-static zt_status refuse(const stills *images, const char *target, const char *why) {
-    zt_tell(images->listener, ZT_ERROR, "cannot use %s as a name for images: %s", target, why);
+static zt_status refuse(const stills *images, const char *why) {
+    zt_tell(images->listener, ZT_ERROR, "cannot use %s as a name for images: %s",
+            images->target, why);
     return ZT_EARGUMENT;
 }
 
-/* The place of the frame number: a run of # or of @, or a %d, %04d. Returns its end and its
- * digits; NULL where `place` is something else. The text itself never goes to printf. */
-static const char *read_place(const char *place, int *digits) {
-    if (*place != '%') {
-        size_t length = strspn(place, *place == '#' ? "#" : "@");
-        *digits = length <= DIGITS_MAX ? (int)length : 0;
-        return *digits ? place + length : NULL;
+/* Shows that images can be written, by making files beside where they will be. */
+static zt_status probe(const stills *images) {
+    for (int i = 0; i < images->names.count; i++) {
+        zt_aside aside;
+        char *path = zt_names_path(&images->names, 0, i);
+        zt_status status = path ? zt_aside_open(&aside, path, images->listener) : ZT_EMEMORY;
+        free(path);
+        ZT_TRY(status);
+        zt_aside_drop(&aside);
     }
-    *digits = 1;
-    place++;
-    if (*place == '0') {
-        char *end;
-        long number = strspn(place, "0123456789") <= 3 ? strtol(place, &end, 10) : 0;
-        if (number < 1 || number > DIGITS_MAX) return NULL;
-        *digits = (int)number;
-        place = end;
-    }
-    return *place == 'd' ? place + 1 : NULL;
-}
-
-/* Takes the target apart. Only the file's own name has a place: directories are as they are. */
-static zt_status read_pattern(stills *images, const char *target) {
-    const char *slash = strrchr(target, '/');
-    const char *place = strpbrk(slash ? slash : target, "#@%");
-    if (place) {
-        const char *end = read_place(place, &images->digits);
-        if (!end)
-            return refuse(images, target,
-                          "the frame number is written as #### or @@@@ (one for each digit) "
-                          "or %04d (%d: as many as needed), with 1 to 20 digits");
-        if (strpbrk(end, "#@%"))
-            return refuse(images, target, "it has more than one place for the frame number");
-        images->after = strdup(end);
-        if (!images->after) return ZT_EMEMORY;
-    }
-    images->before = place ? strndup(target, (size_t)(place - target)) : strdup(target);
-    return images->before ? ZT_OK : ZT_EMEMORY;
-}
-
-/* Shows that an image can be written, by making a file beside where they will be. */
-static zt_status probe(const char *target, zt_listener listener) {
-    zt_aside aside;
-    ZT_TRY(zt_aside_open(&aside, target, listener));
-    zt_aside_drop(&aside);
     return ZT_OK;
 }
 
 static zt_status refuse_several(const stills *images) {
-    return refuse(images, images->before,
+    return refuse(images,
                   "there is more than one frame, and only one would be left; write #### where "
                   "the frame number goes");
 }
 
-/* The digits are counted without the sign. */
-static char *path_of(const stills *images, int64_t frame) {
-    if (!images->after) return strdup(images->before);
-    return zt_text_print("%s%.*" PRId64 "%s", images->before, images->digits, frame,
-                         images->after);
-}
-
 /* All that decides how the numbers of an image become the bytes of a file. */
 static char *manner_of(const stills *images, const zt_output_format *format) {
-    const zt_image_wishes *w = &images->wishes;
     const char *view = images->color ? images->color->manner : zt_view_name(format->view);
-    return zt_text_print("%s depth %d compression %s:%d tile %d view %s rate %d/%d",
-                         w->format->endings[0], (int)w->depth,
-                         w->compression ? w->compression->name : "", w->level, w->tile, view,
-                         format->rate.num, format->rate.den);
+    char *wishes = zt_image_wishes_text(&images->wishes);
+    char *manner =
+        wishes ? zt_text_print("%s %s view %s rate %d/%d", images->wishes.format->endings[0],
+                               wishes, view, format->rate.num, format->rate.den)
+               : NULL;
+    free(wishes);
+    return manner;
 }
 
 static bool is_known(zt_hash hash) { return hash.high || hash.low; }
@@ -175,23 +136,26 @@ static const zt_output_record *record_of(const stills *images, int64_t frame) {
                                                                : NULL;
 }
 
+static zt_status check_stranger(const stills *images, int64_t frame, int file) {
+    struct stat there;
+    char *path = zt_names_path(&images->names, frame, file);
+    if (!path) return ZT_EMEMORY;
+    bool taken = lstat(path, &there) == 0;
+    if (taken)
+        zt_tell(images->listener, ZT_ERROR,
+                "%s exists, and is not known to be of an earlier run; with --overwrite it is "
+                "replaced",
+                path);
+    free(path);
+    return taken ? ZT_EFILE : ZT_OK;
+}
+
 /* Refuses a plan that would replace what is not known to be of an earlier run. */
 static zt_status check_strangers(const stills *images) {
     const zt_output_plan *plan = images->plan;
-    for (int64_t i = 0; i < plan->count && !plan->overwrites; i++) {
-        if (record_of(images, plan->frames[i])) continue;
-        char *path = path_of(images, plan->frames[i]);
-        if (!path) return ZT_EMEMORY;
-        struct stat there;
-        bool taken = lstat(path, &there) == 0;
-        if (taken)
-            zt_tell(images->listener, ZT_ERROR,
-                    "%s exists, and is not known to be of an earlier run; with --overwrite it "
-                    "is replaced",
-                    path);
-        free(path);
-        if (taken) return ZT_EFILE;
-    }
+    for (int64_t i = 0; i < plan->count && !plan->overwrites; i++)
+        for (int f = 0; f < images->names.count && !record_of(images, plan->frames[i]); f++)
+            ZT_TRY(check_stranger(images, plan->frames[i], f));
     return ZT_OK;
 }
 
@@ -204,19 +168,39 @@ static zt_status follow_plan(stills *images, const zt_output_format *format) {
     return check_strangers(images);
 }
 
-/* Whether a file is there with just these contents. One that cannot be read is not. */
-static bool holds(const char *path, int64_t size, zt_hash checksum) {
+/* Adds a file to the checksum of those before it. That of one file is its own. */
+static zt_hash joined(zt_hash before, const void *bytes, size_t size, int file) {
+    zt_hash own = zt_hash_bytes(bytes, size), both[2] = {before, own};
+    return file == 0 ? own : zt_hash_bytes(both, sizeof both);
+}
+
+/* Adds a file that is there to a size and a checksum. One that cannot be read is not there. */
+static bool add_file(int64_t *size, zt_hash *checksum, const char *path, int index) {
     struct stat there;
-    FILE *file = fopen(path, "rb");
+    FILE *file = path ? fopen(path, "rb") : NULL;
     if (!file) return false;
-    bool good = fstat(fileno(file), &there) == 0 && S_ISREG(there.st_mode) &&
-                there.st_size == size && size > 0;
-    unsigned char *bytes = good ? malloc((size_t)size) : NULL;
-    good = bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size &&
-           same(zt_hash_bytes(bytes, (size_t)size), checksum);
+    bool good = fstat(fileno(file), &there) == 0 && S_ISREG(there.st_mode) && there.st_size > 0;
+    size_t length = good ? (size_t)there.st_size : 0;
+    unsigned char *bytes = good ? malloc(length) : NULL;
+    good = bytes && fread(bytes, 1, length, file) == length;
+    if (good) *checksum = joined(*checksum, bytes, length, index);
+    *size += (int64_t)length;
     free(bytes);
     fclose(file);
     return good;
+}
+
+/* Whether the files of a frame are there with just what was recorded. */
+static bool is_whole(const stills *images, const zt_output_record *record) {
+    int64_t size = 0;
+    zt_hash checksum = {0};
+    bool good = true;
+    for (int i = 0; i < images->names.count && good && size < record->bytes; i++) {
+        char *path = zt_names_path(&images->names, record->first, i);
+        good = add_file(&size, &checksum, path, i);
+        free(path);
+    }
+    return good && size == record->bytes && same(checksum, record->checksum);
 }
 
 /* In doubt, an image is wanted: making it again is never wrong. */
@@ -228,10 +212,13 @@ static bool wants_still(void *state, int64_t position) {
     if (plan->overwrites || !record || key_of(&key, images, plan->keys[position]) != ZT_OK ||
         !is_known(key) || !same(key, record->key))
         return true;
-    char *path = path_of(images, plan->frames[position]);
-    bool there = path && holds(path, record->bytes, record->checksum);
-    free(path);
-    return !there;
+    return !is_whole(images, record);
+}
+
+/* Only files that have places for all layers can be of some of them. */
+static zt_status check_layers(const stills *images) {
+    if (!images->names.layers || images->wishes.format->has_layers) return ZT_OK;
+    return refuse(images, "only .exr files have the layers that {layer} stands for");
 }
 
 static zt_status open_stills(void **state, const char *target, const zt_output_format *format,
@@ -240,16 +227,19 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
     if (!images) return ZT_EMEMORY;
     images->view = format->view;
     images->listener = listener;
-    zt_status status = zt_image_wish(&images->wishes, target, options, listener);
-    if (status == ZT_OK) status = read_pattern(images, target);
+    images->target = strdup(target);
+    zt_status status = images->target ? ZT_OK : ZT_EMEMORY;
+    if (status == ZT_OK) status = zt_image_wish(&images->wishes, target, options, listener);
+    if (status == ZT_OK) status = zt_names_read(&images->names, target, format->aovs, listener);
+    if (status == ZT_OK) status = check_layers(images);
     if (status == ZT_OK && images->wishes.depth < ZT_DEPTH_HALF)
         status = zt_color_open(&images->color, &format->color, listener);
     images->wishes.color = images->color;
-    if (status == ZT_OK && !images->after && format->frame_count > 1)
+    if (status == ZT_OK && !images->names.after && format->frame_count > 1)
         status = refuse_several(images);
     if (status == ZT_OK) status = follow_plan(images, format);
     if (status == ZT_OK) status = zt_image_file_ready(listener);
-    if (status == ZT_OK) status = probe(target, listener);
+    if (status == ZT_OK) status = probe(images);
     if (status == ZT_OK)
         *state = images;
     else
@@ -258,29 +248,43 @@ static zt_status open_stills(void **state, const char *target, const zt_output_f
 }
 
 static void drop_still(void *state, void *made) {
-    (void)state;
+    const stills *images = state;
     still *ready = made;
-    free(ready->bytes.data);
+    for (int i = 0; i < images->names.count; i++) free(ready->files[i].data);
     free(ready);
+}
+
+static zt_status encode_file(still *ready, const stills *images, const zt_image *image,
+                             int64_t frame, int file) {
+    zt_image_wishes wishes = images->wishes;
+    zt_bytes *bytes = &ready->files[file];
+    char *path = zt_names_path(&images->names, frame, file);
+    if (!path) return ZT_EMEMORY;
+    wishes.layer = zt_names_layer(&images->names, file);
+    zt_status status =
+        zt_image_file_encode(bytes, image, images->view, &wishes, path, images->listener);
+    free(path);
+    if (status != ZT_OK || !images->plan) return status;
+    ready->checksum = joined(ready->checksum, bytes->data, bytes->size, file);
+    ready->size += (int64_t)bytes->size;
+    return ZT_OK;
 }
 
 static zt_status encode_still(still *ready, const stills *images, const zt_image *image,
                               int64_t frame) {
-    char *path = path_of(images, frame);
-    if (!path) return ZT_EMEMORY;
-    zt_status status = zt_image_file_encode(&ready->bytes, image, images->view, &images->wishes,
-                                            path, images->listener);
-    free(path);
-    if (status != ZT_OK || !images->plan) return status;
-    ready->checksum = zt_hash_bytes(ready->bytes.data, ready->bytes.size);
+    for (int i = 0; i < images->names.count; i++)
+        ZT_TRY(encode_file(ready, images, image, frame, i));
+    if (!images->plan) return ZT_OK;
     ready->render_s = image->info.render_s;
     return key_of(&ready->key, images, image->info.known ? image->info.key : (zt_hash){0});
 }
 
 static zt_status make_still(void **made, void *state, const zt_image *image, int64_t frame) {
-    still *ready = calloc(1, sizeof *ready);
+    const stills *images = state;
+    still *ready =
+        calloc(1, sizeof *ready + (size_t)images->names.count * sizeof *ready->files);
     if (!ready) return ZT_EMEMORY;
-    zt_status status = encode_still(ready, state, image, frame);
+    zt_status status = encode_still(ready, images, image, frame);
     if (status == ZT_OK)
         *made = ready;
     else
@@ -306,24 +310,31 @@ static zt_status record(const stills *images, const still *ready, int64_t frame,
                                      .first = frame,
                                      .count = 1,
                                      .key = ready->key,
-                                     .bytes = (int64_t)ready->bytes.size,
+                                     .bytes = ready->size,
                                      .checksum = ready->checksum,
                                      .render_s = ready->render_s,
                                      .file = path};
     return plan->completed(plan->user, &record);
 }
 
+static zt_status write_files(stills *images, const still *ready, int64_t frame) {
+    for (int i = 0; i < images->names.count; i++) {
+        char *path = zt_names_path(&images->names, frame, i);
+        zt_status status = path ? write_file(images, &ready->files[i], path) : ZT_EMEMORY;
+        if (status == ZT_OK && i == images->names.count - 1)
+            status = record(images, ready, frame, path);
+        free(path);
+        ZT_TRY(status);
+    }
+    return ZT_OK;
+}
+
 static zt_status write_still(void *state, void *made, int64_t frame) {
     stills *images = state;
-    const still *ready = made;
-    char *path = path_of(images, frame);
-    zt_status status = path ? ZT_OK : ZT_EMEMORY;
-    if (status == ZT_OK && !images->after && images->single_written)
-        status = refuse_several(images);
-    if (status == ZT_OK) status = write_file(images, &ready->bytes, path);
-    if (status == ZT_OK) status = record(images, ready, frame, path);
+    zt_status status = ZT_OK;
+    if (!images->names.after && images->single_written) status = refuse_several(images);
+    if (status == ZT_OK) status = write_files(images, made, frame);
     images->single_written = true;
-    free(path);
     drop_still(state, made);
     return status;
 }

@@ -53,7 +53,8 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
                                    .height = settings->height ? settings->height : film->height,
                                    .rate = film->rate,
                                    .view = film->view,
-                                   .color = film->color};
+                                   .color = film->color,
+                                   .aovs = r->aovs};
     r->checks_reuse = settings->check_reuse;
     zt_status status =
         open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
