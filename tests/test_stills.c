@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "files.h"
+#include <zoetrope/aov.h>
 #include <zoetrope/output.h>
 
 enum { FRAMES = 3, RECORDS_MAX = 16 };
@@ -250,11 +251,172 @@ static void telling_may_fail(void **state) {
     assert_int_equal(entry_count("stop"), 1);
 }
 
+static bool is_shown(const char *path, const zt_image *image, const char *channel) {
+    heard h;
+    zt_image *back;
+    if (zt_image_read(&back, path, listener_of(&h)) != ZT_OK) fail_msg("%s", h.text);
+    const float *sent = channel ? zt_image_channel(image, channel) : image->pixels,
+                *seen = channel ? zt_image_channel(back, channel) : back->pixels;
+    size_t size = (size_t)image->width * (size_t)image->height * sizeof(float);
+    bool shown = seen && memcmp(seen, sent, channel ? size : 4 * size) == 0;
+    bool alone = back->channel_count == (channel ? (*channel == 'Z' ? 1 : 3) : 0);
+    zt_image_free(&back);
+    return shown && alone;
+}
+
+/* Where a target has a place for it, each layer has a file, with just what belongs to it. All
+ * of a frame's files are one record: it is there whole, or not at all. */
+static void layers_have_files(void **state) {
+    (void)state;
+    const char *const target = "layers/{layer}/a.{layer}.####.exr";
+    static const char *const paths[] = {"layers/rgba/a.rgba.0009.exr",
+                                        "layers/depth/a.depth.0009.exr",
+                                        "layers/N/a.N.0009.exr"};
+    heard h;
+    records made;
+    zt_output *output;
+    zt_output_plan plan = plan_of(NULL, &made);
+    plan.count = 1;
+    zt_output_format format = {
+        .width = 8, .height = 6, .rate = {24, 1}, .plan = &plan, .aovs = ZT_AOV_Z | ZT_AOV_N};
+    assert_int_equal(zt_output_open(&output, target, &format, NULL, listener_of(&h)), ZT_OK);
+    zt_image *image = picture(8, 6, 0);
+    assert_int_equal(zt_image_add_aovs(image, format.aovs), ZT_OK);
+    for (int c = 0; c < image->channel_count; c++)
+        for (int i = 0; i < 8 * 6; i++) image->channels[c].values[i] = (float)(100 * c + i);
+    image->info = (zt_image_info){.known = true, .frame = 9, .rate = {24, 1}, .key = keys[0]};
+    assert_int_equal(zt_output_write(output, image, 9), ZT_OK);
+    assert_int_equal(zt_output_close(&output), ZT_OK);
+    assert_true(is_shown(paths[0], image, NULL));
+    assert_true(is_shown(paths[1], image, "Z"));
+    assert_true(is_shown(paths[2], image, "N.Y"));
+    zt_image_free(&image);
+
+    assert_int_equal(made.count, 1);
+    records before = made;
+    plan.records = before.items;
+    plan.record_count = 1;
+    for (int i = -1; i < 6; i++) { /* untouched; each damaged, then gone */
+        struct stat there;
+        if (i >= 0 && i < 3) edit(paths[i], -3, 'x');
+        if (i >= 3) assert_int_equal(remove(paths[i - 3]), 0);
+        assert_int_equal(zt_output_open(&output, target, &format, NULL, listener_of(&h)),
+                         ZT_OK);
+        assert_int_equal(zt_output_wants(output, 0), i >= 0);
+        assert_int_equal(zt_output_close(&output), ZT_OK);
+        assert_int_equal(stat(paths[i < 2 ? 2 : 0], &there), i < 3 ? 0 : -1);
+    }
+    assert_int_equal(
+        zt_output_open(&output, "layers/{layer}.####.png", &format, NULL, listener_of(&h)),
+        ZT_EARGUMENT);
+    assert_told(&h, "{layer}");
+}
+
+/* A strange file of any layer is left alone. */
+static void strange_layers_stay(void **state) {
+    (void)state;
+    heard h;
+    records now;
+    zt_output *output;
+    const zt_output_plan plan = plan_of(NULL, &now);
+    const zt_output_format format = {
+        .width = 8, .height = 6, .rate = {24, 1}, .plan = &plan, .aovs = ZT_AOV_Z};
+    assert_int_equal(mkdir("odd", 0777), 0);
+    FILE *file = fopen("odd/depth.0004.exr", "w");
+    assert_non_null(file);
+    fclose(file);
+    assert_int_equal(
+        zt_output_open(&output, "odd/{layer}.####.exr", &format, NULL, listener_of(&h)),
+        ZT_EFILE);
+    assert_told(&h, "odd/depth.0004.exr");
+    assert_int_equal(entry_count("odd"), 1);
+}
+
+/* Names come into their places, as parts of a file's name: they lead nowhere else, and are no
+ * places themselves. Other places are told. */
+static void names_stay_inside(void **state) {
+    static const struct {
+        const char *target, *name, *camera, *path;
+    } rows[] = {{"o/{name}.####.png", "film", "camera", "o/film.####.png"},
+                {"{name}/{camera}/{name}.{layer}.exr", "a", "b", "a/b/a.{layer}.exr"},
+                {"o/{name}.png", "../../etc/passwd", "c", "o/_._.._etc_passwd.png"},
+                {"{name}/{camera}.png", "..", ".", "_./_.png"},
+                {"{name}.{camera}.png", "a#b@c%d\\e:f\n", "{name}{layer}",
+                 "a_b_c_d_e_f_._name__layer_.png"},
+                {"{name}.png", "", "c", "_.png"},
+                {"{name}.png", "/", "c", "_.png"},
+                {"{name}.png", "N\xc3\xa4her", "c", "N\xc3\xa4her.png"},
+                {"plain.png", "a", "b", "plain.png"}};
+    (void)state;
+    heard h;
+    char *path;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(zt_output_target(&path, rows[i].target, rows[i].name, rows[i].camera,
+                                          listener_of(&h)),
+                         ZT_OK);
+        assert_string_equal(path, rows[i].path);
+        free(path);
+    }
+    assert_int_equal(zt_output_target(&path, "{shot}.png", "a", "b", listener_of(&h)),
+                     ZT_EARGUMENT);
+    assert_told(&h, "no {shot} for {shot}.png: there is {name}, {camera} and {layer}");
+    assert_null(path);
+}
+
+static zt_status write_plain(zt_output *output) {
+    zt_image *image = picture(8, 6, 0);
+    zt_status status = zt_output_write(output, image, 4);
+    zt_image_free(&image);
+    return status;
+}
+
+/* What happens to the directory meanwhile: one that went is made again; what a link leads to is
+ * not written into, but a directory is; a file in its place is told; and of nothing a half is
+ * left. */
+static void directories_change(void **state) {
+    (void)state;
+    heard h;
+    zt_output *output;
+    const zt_output_format format = {.width = 8, .height = 6, .rate = {24, 1}};
+    assert_int_equal(zt_output_open(&output, "gone/a.####.png", &format, NULL, listener_of(&h)),
+                     ZT_OK);
+    assert_int_equal(rmdir("gone"), 0);
+    assert_int_equal(write_plain(output), ZT_OK);
+    assert_int_equal(zt_output_close(&output), ZT_OK);
+    assert_int_equal(entry_count("gone"), 1);
+
+    assert_int_equal(symlink("gone", "way"), 0);
+    assert_int_equal(symlink("a.0004.png", "gone/b.0004.png"), 0);
+    edit("gone/a.0004.png", 0, 'x');
+    assert_int_equal(zt_output_open(&output, "way/b.####.png", &format, NULL, listener_of(&h)),
+                     ZT_OK);
+    assert_int_equal(write_plain(output), ZT_OK);
+    assert_int_equal(zt_output_close(&output), ZT_OK);
+    size_t size;
+    char *bytes = file_bytes("gone/a.0004.png", &size);
+    assert_int_equal(bytes[0], 'x');
+    free(bytes);
+    struct stat there;
+    assert_true(lstat("gone/b.0004.png", &there) == 0 && S_ISREG(there.st_mode));
+    assert_int_equal(entry_count("gone"), 2);
+
+    assert_int_equal(zt_output_open(&output, "late/a.####.png", &format, NULL, listener_of(&h)),
+                     ZT_OK);
+    assert_int_equal(rmdir("late"), 0);
+    assert_int_equal(rename("gone/b.0004.png", "late"), 0);
+    assert_int_equal(write_plain(output), ZT_EFILE);
+    assert_told(&h, "late/a.0004.png");
+    assert_int_equal(zt_output_close(&output), ZT_OK);
+    assert_true(lstat("late", &there) == 0 && S_ISREG(there.st_mode));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(records_tell_of_files), cmocka_unit_test(whole_files_need_not_come),
         cmocka_unit_test(keys_decide),           cmocka_unit_test(strangers_stay),
-        cmocka_unit_test(telling_may_fail),
+        cmocka_unit_test(telling_may_fail),      cmocka_unit_test(layers_have_files),
+        cmocka_unit_test(strange_layers_stay),   cmocka_unit_test(names_stay_inside),
+        cmocka_unit_test(directories_change),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
