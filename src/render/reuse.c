@@ -2,6 +2,9 @@
 
 #include <stdlib.h>
 #include <string.h>
+#if defined __SSE__
+#include <xmmintrin.h>
+#endif
 
 #include "base/diag.h"
 
@@ -147,20 +150,27 @@ void zt_reuse_end(zt_frame *f, bool done) {
 /* ---- pixels ---------------------------------------------------------------------------------
  */
 
-static void copy_rows(float *to, const float *from, int width, int left, int top, int columns,
-                      int rows) {
-    for (int y = top; y < top + rows; y++) {
-        size_t at = 4 * ((size_t)y * (size_t)width + (size_t)left);
-        memcpy(to + at, from + at, 4 * (size_t)columns * sizeof *to);
-    }
+/* Pixels, past the caches, as rendered ones are written (render/render.c): both of what is read
+ * and of what is written there is more than fits there. */
+static void stream(float *to, const float *from, int count) {
+#if defined __SSE__
+    for (int i = 0; i < count; i++) _mm_stream_ps(to + 4 * i, _mm_loadu_ps(from + 4 * i));
+#else
+    memcpy(to, from, 4 * (size_t)count * sizeof *to);
+#endif
 }
 
 void zt_reuse_copy(zt_frame *f, int left, int top, int width, int height) {
-    copy_rows(f->image->pixels, f->job->reuse->pixels, f->image->width, left, top, width,
-              height);
+    for (int y = top; y < top + height; y++) {
+        size_t at = 4 * ((size_t)y * (size_t)f->image->width + (size_t)left);
+        stream(f->image->pixels + at, f->job->reuse->pixels + at, width);
+    }
 }
 
 void zt_reuse_keep(zt_frame *f, int left, int top, int width, int height) {
-    copy_rows(f->job->reuse->pixels, f->image->pixels, f->image->width, left, top, width,
-              height);
+    for (int y = top; y < top + height; y++) {
+        size_t at = 4 * ((size_t)y * (size_t)f->image->width + (size_t)left);
+        memcpy(f->job->reuse->pixels + at, f->image->pixels + at,
+               4 * (size_t)width * sizeof(float));
+    }
 }

@@ -100,7 +100,9 @@ static void add_lamps(zt_differences *d, const zt_outline *before, const zt_outl
 zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
                               const zt_outline *now, bool same_numbers, zt_arena *arena) {
     *d = (zt_differences){.now = now, .stretch = 1};
-    d->all = !same(before->rest, now->rest);
+    /* Of rays that were left out, and might count now, nothing is known. */
+    d->all = !same(before->rest, now->rest) || (before->blind && !now->blind) ||
+             (before->faint && now->brightest > before->brightest);
     if (d->all) return ZT_OK;
     size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
     d->places = ZT_PUSH(arena, zt_difference, most);

@@ -81,6 +81,9 @@ typedef struct zt_outline {
     int32_t thing_count, lamp_count;
     zt_hash ambient, rest; /* rest: all that concerns all rays */
     bool ambient_moves;
+    bool blind; /* mirrored rays were left out, since they meet nothing; */
+    bool faint; /* or where they are too faint to count, given how bright points are at most */
+    double brightest;
 } zt_outline;
 
 /* ZT_EMEMORY. */

@@ -179,9 +179,6 @@ static zt_hash rest_of(const zt_tracer *tracer) {
     put(&n, sizeof(real));
     put(&n, (double)tracer->tie);
     put(&n, scene->reflection_depth);
-    put(&n, tracer->reflection_depth);
-    put(&n, tracer->faint_depth);
-    if (tracer->faint_depth < scene->reflection_depth) put(&n, (double)tracer->brightest);
     put(&n, tracer->crowd != NULL);
     put(&n, tracer->lamp_count);
     zt_hash rest = hash_of(&n);
@@ -199,6 +196,15 @@ static zt_hash ambient_of(const zt_tracer *tracer, zt_hash times) {
     return joined(times, hash_with(&n, tracer->ambients, moments * sizeof *tracer->ambients));
 }
 
+/* Whether there are mirrors, in which nothing is to be seen, so that nobody looked. */
+static bool is_blind(const zt_tracer *tracer) {
+    bool mirrors = false;
+    for (int32_t i = 0; i < tracer->primitive_count; i++)
+        mirrors |= tracer->surfaces[i].reflectivity > 0 ||
+                   (tracer->changes && tracer->changes[i].looks);
+    return mirrors && tracer->reflection_depth < tracer->exposure->moments->reflection_depth;
+}
+
 zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
                                    zt_arena *arena) {
     const zt_hash times = times_of(tracer);
@@ -206,7 +212,10 @@ zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
                     .lamp_count = tracer->lamp_count,
                     .ambient = ambient_of(tracer, times),
                     .ambient_moves = tracer->ambients != NULL,
-                    .rest = rest_of(tracer)};
+                    .rest = rest_of(tracer),
+                    .blind = is_blind(tracer),
+                    .brightest = (double)tracer->brightest};
+    o.faint = tracer->faint_depth < tracer->reflection_depth;
     o.things = ZT_PUSH(arena, zt_outline_thing, (size_t)o.thing_count);
     o.lamps = ZT_PUSH(arena, zt_outline_lamp, (size_t)o.lamp_count);
     if (!o.things || !o.lamps) return ZT_EMEMORY;
