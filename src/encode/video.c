@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
 
 #include "base/text.h"
 #include "encode/aside.h"
@@ -19,19 +18,12 @@
 #include "encode/video_pixels.h"
 #include "encode/video_store.h"
 
-/* Converts for one thread at a time. */
-typedef struct converter {
-    struct converter *next;
-    zt_video_pixels *pixels;
-} converter;
-
 typedef struct movie {
     zt_video_ear ear;
     zt_video_choice choice, grown; /* of the film, and of the pieces that it grows in */
     zt_output_option *options;     /* a copy, which the choice points into */
     zt_output_format format;
-    mtx_t mutex;
-    converter *converters;         /* those that nobody uses just now */
+    zt_video_pixels *pixels;
     AVFrame *like;                 /* a frame of the kind that will come, with its tags */
     AVCodecParameters *parameters; /* of the film's packets */
     zt_aside aside;                /* of the film while it is joined */
@@ -52,20 +44,11 @@ static void free_options(movie *m) {
     free(m->options);
 }
 
-static void free_converters(movie *m) {
-    for (converter *c; (c = m->converters);) {
-        m->converters = c->next;
-        zt_video_pixels_close(&c->pixels);
-        free(c);
-    }
-}
-
 /* What later runs can use stays. */
 static void movie_free(movie *m, bool keeps_pieces, bool keeps_frames) {
     zt_video_growth_close(&m->growth, keeps_pieces, keeps_frames);
     zt_aside_drop(&m->aside);
-    free_converters(m);
-    mtx_destroy(&m->mutex);
+    zt_video_pixels_close(&m->pixels);
     av_frame_free(&m->like);
     avcodec_parameters_free(&m->parameters);
     free_options(m);
@@ -101,45 +84,11 @@ static zt_status choose_grown(movie *m) {
     return ZT_OK;
 }
 
-static converter *take_converter(movie *m) {
-    mtx_lock(&m->mutex);
-    converter *c = m->converters;
-    if (c) m->converters = c->next;
-    mtx_unlock(&m->mutex);
-    return c;
-}
-
-static void give_back(movie *m, converter *c) {
-    mtx_lock(&m->mutex);
-    c->next = m->converters;
-    m->converters = c;
-    mtx_unlock(&m->mutex);
-}
-
-static zt_status add_converter(movie *m) {
-    converter *c = calloc(1, sizeof *c);
-    if (!c) return ZT_EMEMORY;
-    zt_status status = zt_video_pixels_open(&c->pixels, &m->format, m->grown.pixels, &m->ear);
-    if (status == ZT_OK)
-        give_back(m, c);
-    else
-        free(c);
-    return status;
-}
-
-static zt_status convert(AVFrame **frame, movie *m, const zt_image *image) {
-    converter *c;
-    while (!(c = take_converter(m))) ZT_TRY(add_converter(m));
-    zt_status status = zt_video_pixels_convert(frame, c->pixels, image, &m->ear);
-    give_back(m, c);
-    return status;
-}
-
 static zt_status make_like(movie *m) {
     zt_image *image = NULL;
-    ZT_TRY(add_converter(m));
+    ZT_TRY(zt_video_pixels_open(&m->pixels, &m->format, m->grown.pixels, &m->ear));
     ZT_TRY(zt_image_create(&image, m->format.width, m->format.height));
-    zt_status status = convert(&m->like, m, image);
+    zt_status status = zt_video_pixels_convert(&m->like, m->pixels, image, &m->ear);
     zt_image_free(&image);
     return status;
 }
@@ -184,9 +133,11 @@ static zt_status open_growth(movie *m) {
     if (status != ZT_OK || m->choice.stored)
         zt_video_encoder_close(&encoder, m->choice.stored ? NULL : m->like);
     ZT_TRY(status);
-    return zt_video_growth_open(
-        &m->growth, m->ear.target, &m->grown, &m->format, m->like, encoder,
-        zt_video_said(&m->choice, m->format.settings, m->ear.target), &m->ear);
+    const zt_video_growth_words words = {
+        zt_video_pixels_manner(m->pixels),
+        zt_video_said(&m->choice, m->format.settings, m->ear.target)};
+    return zt_video_growth_open(&m->growth, m->ear.target, &m->grown, &m->format, m->like,
+                                encoder, &words, &m->ear);
 }
 
 static zt_status open_all(movie *m, const char *target, const zt_output_option *options) {
@@ -201,6 +152,8 @@ static zt_status open_all(movie *m, const char *target, const zt_output_option *
     if (zt_wish_value(options, "audio") && !kind->sound)
         zt_tell(m->ear.listener, ZT_WARNING, "%s has no sound: %s files hold none", target,
                 kind->ending);
+    if (m->choice.codec->palette && !zt_module_door("video_palette", "a GIF", m->ear.listener))
+        return ZT_EUNSUPPORTED;
     ZT_TRY(zt_aside_open_as(&m->aside, target, ".joined", m->ear.listener));
     ZT_TRY(check_room(m));
     ZT_TRY(make_like(m));
@@ -212,10 +165,6 @@ static zt_status open_movie(void **state, const char *target, const zt_output_fo
     zt_libav_listen();
     movie *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
-    if (mtx_init(&m->mutex, mtx_plain) != thrd_success) {
-        free(m);
-        return ZT_EMEMORY;
-    }
     m->format = *format;
     m->ear.listener = listener;
     m->growth.part.file = m->growth.spool.file = -1;
@@ -241,11 +190,12 @@ static void drop_frame(void *state, void *made) {
 
 static zt_status make_frame(void **made, void *state, const zt_image *image, int64_t number) {
     (void)number; /* a movie has no gaps and begins at 0, whatever the numbers */
+    const movie *m = state;
     zt_libav_listen();
     picture *ready = calloc(1, sizeof *ready);
     if (!ready) return ZT_EMEMORY;
     if (image->info.known) ready->render_s = image->info.render_s;
-    zt_status status = convert(&ready->frame, state, image);
+    zt_status status = zt_video_pixels_convert(&ready->frame, m->pixels, image, &m->ear);
     if (status == ZT_OK)
         *made = ready;
     else

@@ -28,14 +28,15 @@ static zt_hash mix_text(zt_hash before, const char *text) {
 
 /* All that decides how the numbers of an image become packets: the choice with each option of
  * the encoder's, the format, what encodes, and the head, which has what the encoder says. */
-static void find_manner(zt_video_growth *g, const zt_output_format *format) {
+static void find_manner(zt_video_growth *g, const zt_output_format *format,
+                        const char *conversion) {
     const zt_video_choice *c = g->choice;
     const int64_t numbers[] = {
         (int64_t)c->bitrate, format->width,    format->height,         format->rate.num,
         format->rate.den,    format->view,     g->piece_frames,        c->pixels,
         avcodec_version(),   avutil_version(), c->codec->thread_count, g->like->color_trc};
     zt_hash m = mix(mix_text((zt_hash){0}, c->encoder->name), numbers, sizeof numbers);
-    m = mix_text(mix_text(m, c->crf), c->preset);
+    m = mix_text(mix_text(mix_text(m, conversion), c->crf), c->preset);
     for (const zt_codec_setting *s = c->codec->settings; s->name; s++)
         m = mix_text(mix_text(m, s->name), s->value);
     for (const zt_output_option *o = c->options; o && o->name; o++)
@@ -178,8 +179,8 @@ static zt_status open_spool(zt_video_growth *g, bool keeps) {
 
 zt_status zt_video_growth_open(zt_video_growth *g, const char *target,
                                const zt_video_choice *choice, const zt_output_format *format,
-                               AVFrame *like, AVCodecContext *encoder, zt_hash said,
-                               const zt_video_ear *ear) {
+                               AVFrame *like, AVCodecContext *encoder,
+                               const zt_video_growth_words *words, const zt_video_ear *ear) {
     *g = (zt_video_growth){.ear = ear,
                            .encoder = encoder,
                            .choice = choice,
@@ -194,9 +195,9 @@ zt_status zt_video_growth_open(zt_video_growth *g, const char *target,
     ZT_TRY(find_parameters(g));
     ZT_TRY(zt_aside_open(&g->aside, target, ear->listener));
     ZT_TRY(zt_video_part_open(&g->part, g->aside.path, g->parameters, g->rate, keeps, ear));
-    find_manner(g, format);
+    find_manner(g, format, words->conversion);
     ZT_TRY(open_spool(g, keeps));
-    return g->plan ? follow_plan(g, target, said) : ZT_OK;
+    return g->plan ? follow_plan(g, target, words->said) : ZT_OK;
 }
 
 /* Keeps the first frame, the newest one, and, so that it need not be known how many come, the

@@ -35,14 +35,20 @@ typedef struct zt_video_growth {
     zt_video_sample samples[ZT_VIDEO_SAMPLE_COUNT];
 } zt_video_growth;
 
+/* What else decides what a film is. */
+typedef struct zt_video_growth_words {
+    const char *conversion; /* of light to the numbers of frames */
+    zt_hash said;           /* the key of what the film says besides its frames */
+} zt_video_growth_words;
+
 /* Opens the encoder and the files beside `target`, takes what is there of earlier runs, and
- * what the finished film at `target` has of it. `said` is the key of what the film says besides
- * its frames. The choice, `like` and the format's plan are borrowed;
- * `encoder`, which may be one by that choice that is open already, or NULL, is not. */
+ * what the finished film at `target` has of it. The choice, `like` and the format's plan are
+ * borrowed; `encoder`, which may be one by that choice that is open already, or NULL, is not.
+ */
 zt_status zt_video_growth_open(zt_video_growth *growth, const char *target,
                                const zt_video_choice *choice, const zt_output_format *format,
-                               AVFrame *like, AVCodecContext *encoder, zt_hash said,
-                               const zt_video_ear *ear);
+                               AVFrame *like, AVCodecContext *encoder,
+                               const zt_video_growth_words *words, const zt_video_ear *ear);
 
 /* Takes the next frame that was not kept, which took `render_s` seconds. */
 zt_status zt_video_growth_put(zt_video_growth *growth, AVFrame *frame, double render_s);

@@ -16,7 +16,7 @@ static void describe(char text[ENCODING_MAX], const zt_video_choice *choice,
     zt_video_describe(how, sizeof how, choice);
     snprintf(text, ENCODING_MAX, "Zoetrope: %s, %dx%d, %d/%d frames a second, view %s", how,
              format->width, format->height, format->rate.num, format->rate.den,
-             zt_view_name(format->view));
+             format->color.wished ? "of OpenColorIO" : zt_view_name(format->view));
 }
 
 /* What the file says of itself, where its kind holds that: how it was encoded, and, in a tag
