@@ -32,6 +32,7 @@ zt_stats zt_renderer_stats(const zt_renderer *renderer);
 /* Libraries that are loaded when they are first needed; `what` they are needed for. */
 typedef struct zt_library {
     const char *name, *what;
+    bool built;  /* or left out when the program was */
     bool loaded; /* in this process */
 } zt_library;
 

@@ -18,6 +18,10 @@
  * ("expressions") needs it, is then told. */
 const void *zt_module_door(const char *name, const char *needed_by, zt_listener listener);
 
+/* Whether it was not left out when the program was built; where it was, that is told, as by
+ * zt_module_door(), if there is something that needs it. */
+bool zt_module_is_built(const char *name, const char *needed_by, zt_listener listener);
+
 /* Whether something has needed it so far. */
 bool zt_module_is_loaded(const char *name);
 

@@ -36,16 +36,19 @@ static void print_frames(const zt_film_result *r) {
     putchar('\n');
 }
 
+/* Loaded, not loaded, left out of the program. */
+static int state_of(const zt_library *l) { return !l->built ? 2 : !l->loaded; }
+
 static void print_libraries(void) {
     zt_library libraries[ZT_LIBRARY_COUNT];
     zt_libraries(libraries);
-    for (int loaded = 1; loaded >= 0; loaded--) {
-        const char *before = loaded ? "libraries" : "not loaded";
+    for (int state = 0; state < 3; state++) {
+        static const char *const before[] = {"libraries", "not loaded", "not built"};
         int count = 0;
         for (int i = 0; i < ZT_LIBRARY_COUNT; i++) {
-            if (libraries[i].loaded != loaded) continue;
+            if (state_of(&libraries[i]) != state) continue;
             if (count++ == 0)
-                printf("%-*s ", LABEL_WIDTH, before);
+                printf("%-*s ", LABEL_WIDTH, before[state]);
             else
                 fputs(", ", stdout);
             printf("%s (%s)", libraries[i].name, libraries[i].what);

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/diag.h"
 #include "base/hash.h"
+#include "base/module.h"
 #include "keyframe/animation.h"
 #include "render/guides.h"
 #include "sequence/pacing.h"
@@ -32,10 +33,21 @@ static zt_status open_parts(zt_renderer *r, int thread_count) {
     return zt_render_work_push(&r->work, &r->run, thread_count);
 }
 
+/* What the film will need, and this program was built without, is told before all else. */
+static zt_status check_built(const zt_animation *animation, zt_listener listener) {
+    const zt_scene *rest = &animation->rest;
+    bool meshes = false;
+    for (int32_t i = 0; i < rest->object_count; i++)
+        meshes |= rest->objects[i].shape == ZT_SHAPE_MESH;
+    bool good = !meshes || zt_module_is_built("embree", "a mesh", listener);
+    return good ? ZT_OK : ZT_EUNSUPPORTED;
+}
+
 zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
                            const zt_render_settings *settings, zt_listener listener) {
     *out = NULL;
     ZT_TRY(check_settings(settings));
+    ZT_TRY(check_built(animation, listener));
     zt_renderer *r = calloc(1, sizeof *r);
     if (!r) return ZT_EMEMORY;
     const zt_film *film = &animation->film;

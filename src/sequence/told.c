@@ -46,8 +46,9 @@ void zt_libraries(zt_library libraries[ZT_LIBRARY_COUNT]) {
                                  {"Lua", "expressions", "expression"},
                                  {"librsvg", "drawings as images", "raster"}};
     for (int i = 0; i < ZT_LIBRARY_COUNT; i++)
-        libraries[i] =
-            (zt_library){known[i].name, known[i].what, zt_module_is_loaded(known[i].module)};
+        libraries[i] = (zt_library){known[i].name, known[i].what,
+                                    zt_module_is_built(known[i].module, NULL, (zt_listener){0}),
+                                    zt_module_is_loaded(known[i].module)};
 }
 
 /* ---- sentences -----------------------------------------------------------------------------

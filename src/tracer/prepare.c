@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/diag.h"
+#include "base/module.h"
 #include "tracer/motion.h"
 
 /* More bounded things than this are asked through a hierarchy. */
@@ -198,7 +199,9 @@ zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
     int32_t single_count = 0, crowd_count = 0;
     for (int32_t i = 0; i < tracer->primitive_count; i++)
         if (tracer->primitives[i].kind != ZT_PRIMITIVE_PLANE) crowd[crowd_count++] = i;
-    bool many = crowd_count > SINGLE_MAX;
+    /* Without Embree there is no hierarchy; the bits are the same. */
+    bool many =
+        crowd_count > SINGLE_MAX && zt_module_is_built("embree", NULL, (zt_listener){0});
     for (int32_t i = 0; i < tracer->primitive_count; i++)
         if (!many || tracer->primitives[i].kind == ZT_PRIMITIVE_PLANE)
             single[single_count++] = i;

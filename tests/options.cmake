@@ -1,0 +1,47 @@
+# What a build is told to leave out is not even looked for:
+#   cmake -DROOT=the repository -DSCRATCH=a directory -P options.cmake
+# Each library by itself, and all of them: configuring succeeds and finds none of it.
+cmake_minimum_required(VERSION 3.25)
+
+set(prefixes_EMBREE EMBREE_)
+set(prefixes_OPENIMAGEIO OIIO_)
+set(prefixes_FFMPEG FFMPEG_ AVFILTER_)
+set(prefixes_LUA LUA_)
+set(prefixes_RSVG RSVG_)
+set(libraries EMBREE OPENIMAGEIO FFMPEG LUA RSVG)
+
+function(configure_without)
+  set(options "")
+  foreach(library ${ARGN})
+    list(APPEND options -DZOETROPE_WITH_${library}=OFF)
+  endforeach()
+  file(REMOVE_RECURSE ${SCRATCH})
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${ROOT} -B ${SCRATCH} ${options}
+                  OUTPUT_QUIET ERROR_VARIABLE told RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "without ${ARGN}: ${told}")
+  endif()
+  foreach(library ${ARGN})
+    foreach(prefix ${prefixes_${library}})
+      file(STRINGS ${SCRATCH}/CMakeCache.txt found REGEX "^${prefix}")
+      if(found)
+        message(FATAL_ERROR "without ${library} it was looked for: ${found}")
+      endif()
+    endforeach()
+  endforeach()
+  # The others are there.
+  foreach(library ${libraries})
+    foreach(prefix ${prefixes_${library}})
+      file(STRINGS ${SCRATCH}/CMakeCache.txt found REGEX "^${prefix}")
+      if(NOT library IN_LIST ARGN AND NOT found)
+        message(FATAL_ERROR "without ${ARGN}, ${library} was not looked for")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
+foreach(library ${libraries})
+  configure_without(${library})
+endforeach()
+configure_without(${libraries})
+file(REMOVE_RECURSE ${SCRATCH})
