@@ -329,8 +329,9 @@ static void files(void **state) {
     }
 }
 
-/* The A of a picture that is full is in its file, so that all of a film's are alike: byte 25 of
- * a PNG is 6 for RGBA, and 2 for RGB. */
+/* The A of a picture that is full is in its file, so that all of a film's are alike, and in a
+ * movie: byte 25 of a PNG and of an APNG is 6 for RGBA, and 2 for RGB. An image that is read
+ * again is still a transparent film's. */
 static void full(void **state) {
     (void)state;
     static const char text[] = "zoetrope: 1\n"
@@ -342,10 +343,17 @@ static void full(void **state) {
         size_t size;
         snprintf(own, sizeof own, text, transparent ? "transparent" : "opaque");
         make(own, "full.#.png", (zt_budget){0});
-        char *bytes = file_bytes("full.0.png", &size);
-        assert_true(size > 25);
-        assert_int_equal(bytes[25], transparent ? 6 : 2);
-        free(bytes);
+        make(own, "full.apng", (zt_budget){0});
+        for (int i = 0; i < 2; i++) {
+            char *bytes = file_bytes(i ? "full.apng" : "full.0.png", &size);
+            assert_true(size > 25);
+            assert_int_equal(bytes[25], transparent ? 6 : 2);
+            free(bytes);
+        }
+        zt_image *image;
+        assert_int_equal(zt_image_read(&image, "full.0.png", (zt_listener){0}), ZT_OK);
+        assert_int_equal(image->transparent, transparent);
+        zt_image_free(&image);
     }
 }
 

@@ -69,6 +69,7 @@ typedef struct zt_output_format {
     const char *settings;    /* as in zt_image_info, but for what is each frame's own */
     const char *description; /* the name of its file */
     unsigned aovs;           /* bits of zt_aov that images have, for the {layer} of a target */
+    bool transparent; /* the images' A says something: movies have it where their codec can */
 } zt_output_format;
 
 /* A wish for how an output is written. All know, and leave out where they cannot hold it,
@@ -85,8 +86,8 @@ typedef struct zt_output_format {
  * - preset: how much time the encoder takes for a frame: of h264 and h265 ultrafast, superfast,
  *   veryfast (where nothing is wished for), faster, fast, medium, slow, slower, veryslow,
  *   placebo; of av1 13 to 0, of vp9 8 to 0;
- * - pixel-format: as FFmpeg calls it, "yuv420p10le"; those with an "a" have alpha, which else
- * is left out;
+ * - pixel-format: as FFmpeg calls it, "yuv420p10le"; those with an "a" have alpha, as
+ *   transparent films have by themselves where the codec can;
  * - encoder-option: "key=value" for the encoder itself; any number of times.
  */
 typedef zt_wish zt_output_option;

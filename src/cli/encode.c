@@ -168,6 +168,7 @@ static zt_status open_movie(zt_output **output, const char *target, int64_t coun
                                .height = image->height,
                                .rate = info->known ? info->rate : (zt_rate){24, 1},
                                .view = view,
+                               .transparent = image->transparent,
                                .frame_count = count,
                                .settings = settings,
                                .description = info->description};

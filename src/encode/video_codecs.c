@@ -111,6 +111,7 @@ static const zt_codec codecs[] = {
      .endings = {".mp4", ".mkv", ".webm"},
      .pixels = {"yuv420p", "yuv420p10le", "yuv422p", "yuv422p10le", "yuv444p", "yuv444p10le",
                 "yuva420p"},
+     .opaque_in = ".mp4",
      .crf = "20",
      .crf_max = 63,
      .has_bitrate = true,
@@ -246,17 +247,55 @@ static zt_status choose_codec(zt_video_choice *choice, const zt_video_ear *ear) 
                            choice->codec->encoder, name, *known.list ? known.list : " nothing");
 }
 
+static bool has_alpha(enum AVPixelFormat pixels) {
+    return av_pix_fmt_desc_get(pixels)->nb_components == 4;
+}
+
+static bool holds_alpha(const zt_video_choice *choice) {
+    const char *not_in = choice->codec->opaque_in;
+    return !not_in || !zt_text_equal(choice->container->ending, not_in);
+}
+
+/* The pixel format where none is asked for: of films with alpha the first one that has it, and
+ * no fewer bits than the usual one. */
+static const char *own_pixels(const zt_video_choice *choice, bool transparent) {
+    const zt_codec *codec = choice->codec;
+    const AVPixFmtDescriptor *usual = av_pix_fmt_desc_get(av_get_pix_fmt(codec->pixels[0]));
+    for (const char *const *p = codec->pixels; transparent && holds_alpha(choice) && *p; p++) {
+        enum AVPixelFormat pixels = av_get_pix_fmt(*p);
+        if (has_alpha(pixels) &&
+            av_pix_fmt_desc_get(pixels)->comp[0].depth >= usual->comp[0].depth)
+            return *p;
+    }
+    return codec->pixels[0];
+}
+
+/* What becomes of the film's alpha, and of the one that was asked for. */
+static zt_status check_alpha(const zt_video_choice *choice, bool transparent,
+                             const zt_video_ear *ear) {
+    const char *title = choice->codec->title, *ending = choice->container->ending;
+    bool alpha = has_alpha(choice->pixels);
+    if (alpha && !holds_alpha(choice))
+        return zt_video_refuse(ear, ZT_EUNSUPPORTED, "%s has no place for the alpha of %s",
+                               ending, title);
+    if (transparent && !alpha)
+        zt_tell(ear->listener, ZT_WARNING,
+                "%s: %s without alpha: what is transparent becomes black", ear->target, title);
+    return ZT_OK;
+}
+
 /* A format may be named without the "le" of its order of bytes, as FFmpeg has it. */
-static zt_status choose_pixels(zt_video_choice *choice, const zt_video_ear *ear) {
+static zt_status choose_pixels(zt_video_choice *choice, bool transparent,
+                               const zt_video_ear *ear) {
     const zt_codec *codec = choice->codec;
     const char *wanted = zt_wish_value(choice->options, "pixel-format");
-    const char *name = wanted ? wanted : codec->pixels[0];
+    const char *name = wanted ? wanted : own_pixels(choice, transparent);
     choice->pixels = av_get_pix_fmt(name);
     names known = {.nearest = zt_nearest_to(name)};
     for (const char *const *p = codec->pixels; *p; p++) {
         if (choice->pixels != AV_PIX_FMT_NONE && av_get_pix_fmt(*p) == choice->pixels) {
             choice->stored = codec->stored[p - codec->pixels];
-            return ZT_OK;
+            return check_alpha(choice, transparent, ear);
         }
         add_name(&known, *p);
     }
@@ -430,7 +469,7 @@ zt_status zt_video_choose(zt_video_choice *choice, const zt_output_format *forma
     if (!choice->container)
         return zt_video_refuse(ear, ZT_EUNSUPPORTED, "no movie has this ending");
     ZT_TRY(choose_codec(choice, ear));
-    ZT_TRY(choose_pixels(choice, ear));
+    ZT_TRY(choose_pixels(choice, format->transparent, ear));
     ZT_TRY(choose_preset(choice, ear));
     ZT_TRY(choose_bitrate(choice, ear));
     ZT_TRY(choose_crf(choice, ear));

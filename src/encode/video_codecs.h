@@ -42,6 +42,7 @@ typedef struct zt_codec {
     const char *pixels[ZT_CODEC_LIST_MAX]; /* the first one where none is asked for */
     const char *stored[ZT_CODEC_LIST_MAX]; /* how frames of each wait in FFV1, where the kind
                                               of file has no pieces */
+    const char *opaque_in; /* the ending of files that have no place for its alpha; or NULL */
     int width_min, height_min;
     const char *crf; /* where none is asked for; NULL: there is no such scale */
     int crf_max;

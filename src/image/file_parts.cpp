@@ -114,9 +114,9 @@ void add_film(OIIO::ImageSpec &spec, const zt_image_info &info) {
 }
 
 /* As texts, each by its name; in TIFF, which has no place for those, as its one description. */
-zt_status add_texts(OIIO::ImageSpec &spec, const zt_image_info &info, bool one) {
+zt_status add_texts(OIIO::ImageSpec &spec, const zt_image *image, bool one) {
     Texts texts;
-    zt_status status = zt_info_print(texts.all, &info);
+    zt_status status = zt_info_print(texts.all, image);
     if (status != ZT_OK) return status;
     for (int i = 0; i < ZT_INFO_COUNT && !one; i++)
         if (texts.all[i]) spec.attribute(zt_info_names[i], texts.all[i]);
@@ -126,13 +126,14 @@ zt_status add_texts(OIIO::ImageSpec &spec, const zt_image_info &info, bool one) 
     return joined ? ZT_OK : ZT_EMEMORY;
 }
 
-zt_status add_info(OIIO::ImageSpec &spec, const zt_image_info &info, const zt_image_wishes *w) {
+zt_status add_info(OIIO::ImageSpec &spec, const zt_image *image, const zt_image_wishes *w) {
+    const zt_image_info &info = image->info;
     bool exr = is_format(w, ".exr"), tiff = is_format(w, ".tif"), dpx = is_format(w, ".dpx");
     if (!info.known || !(exr || tiff || dpx || is_format(w, ".png"))) return ZT_OK;
     spec.attribute("Software", software);
     if (exr) add_standard(spec, info);
     if (dpx) add_film(spec, info);
-    return dpx ? ZT_OK : add_texts(spec, info, tiff);
+    return dpx ? ZT_OK : add_texts(spec, image, tiff);
 }
 
 /* All views make numbers that are meant for an sRGB display as they are; floats are linear, of
@@ -158,7 +159,7 @@ zt_status make_spec(OIIO::ImageSpec &spec, const zt_image *image, const zt_image
     spec.tile_depth = w->tile ? 1 : 0;
     add_colour_space(spec, w);
     add_particulars(spec, w);
-    return add_info(spec, image->info, w);
+    return add_info(spec, image, w);
 }
 
 void add_channel(Part &part, const char *name, OIIO::TypeDesc type) {

@@ -7,11 +7,14 @@
 
 #include "base/text.h"
 
-enum { FRAME, RATE, KEY, SEED, TITLE, DESCRIPTION, VIEW, SETTINGS };
+enum { FRAME, RATE, KEY, SEED, TITLE, DESCRIPTION, VIEW, SETTINGS, BACKGROUND };
 
 const char *const zt_info_names[ZT_INFO_COUNT] = {
-    "zoetrope:frame", "zoetrope:rate",        "zoetrope:key",  "zoetrope:seed",
-    "zoetrope:title", "zoetrope:description", "zoetrope:view", "zoetrope:settings"};
+    "zoetrope:frame", "zoetrope:rate",     "zoetrope:key",
+    "zoetrope:seed",  "zoetrope:title",    "zoetrope:description",
+    "zoetrope:view",  "zoetrope:settings", "zoetrope:background"};
+
+static const char transparent[] = "transparent";
 
 void zt_info_free(char *texts[ZT_INFO_COUNT]) {
     for (int i = 0; i < ZT_INFO_COUNT; i++) {
@@ -20,11 +23,13 @@ void zt_info_free(char *texts[ZT_INFO_COUNT]) {
     }
 }
 
-zt_status zt_info_print(char *texts[ZT_INFO_COUNT], const zt_image_info *info) {
+zt_status zt_info_print(char *texts[ZT_INFO_COUNT], const zt_image *image) {
+    const zt_image_info *info = &image->info;
     const char *own[ZT_INFO_COUNT] = {[TITLE] = info->title,
                                       [DESCRIPTION] = info->description,
                                       [VIEW] = info->view,
-                                      [SETTINGS] = info->settings};
+                                      [SETTINGS] = info->settings,
+                                      [BACKGROUND] = image->transparent ? transparent : NULL};
     texts[FRAME] = zt_text_print("%" PRId64, info->frame);
     texts[RATE] = zt_text_print("%d/%d", info->rate.num, info->rate.den);
     texts[KEY] = zt_text_print("%016" PRIx64 "%016" PRIx64, info->key.high, info->key.low);
@@ -70,12 +75,13 @@ zt_status zt_info_read(zt_image *image, const char *const texts[ZT_INFO_COUNT]) 
                                           [DESCRIPTION] = &info.description,
                                           [VIEW] = &info.view,
                                           [SETTINGS] = &info.settings};
-    for (int i = TITLE; i < ZT_INFO_COUNT; i++) {
+    for (int i = TITLE; i < BACKGROUND; i++) {
         if (!texts[i]) continue;
         *places[i] = zt_image_own_text(image, texts[i]);
         if (!*places[i]) return ZT_EMEMORY;
     }
     image->info = info;
+    image->transparent = texts[BACKGROUND] && zt_text_equal(texts[BACKGROUND], transparent);
     return ZT_OK;
 }
 

@@ -3,8 +3,6 @@
 #ifndef ZT_IMAGE_INFO_H
 #define ZT_IMAGE_INFO_H
 
-#include <stdbool.h>
-
 #include <zoetrope/image.h>
 
 #ifdef __cplusplus
@@ -12,17 +10,18 @@ extern "C" {
 #endif
 
 /* The least that must be read for an image to be known is what comes before the title. */
-enum { ZT_INFO_COUNT = 8 };
+enum { ZT_INFO_COUNT = 9 };
 
-/* "zoetrope:frame", and so on: rate, key, seed, title, description, view, settings. */
+/* "zoetrope:frame", and so on: rate, key, seed, title, description, view, settings,
+ * background. */
 extern const char *const zt_info_names[ZT_INFO_COUNT];
 
 /* Makes the texts, of the caller to free; NULL of what is not known. ZT_EMEMORY; then there are
  * none. */
-zt_status zt_info_print(char *texts[ZT_INFO_COUNT], const zt_image_info *info);
+zt_status zt_info_print(char *texts[ZT_INFO_COUNT], const zt_image *image);
 
-/* Fills the image's info from such texts, NULL where there is none; it is not known where one
- * that must be there is not, or makes no sense. ZT_EMEMORY. */
+/* Fills the image's info, and whether it is transparent, from such texts, NULL where there is
+ * none; it is not known where one that must be there is not, or makes no sense. ZT_EMEMORY. */
 zt_status zt_info_read(zt_image *image, const char *const texts[ZT_INFO_COUNT]);
 
 /* All in one text, of the caller to free: a line for each, "zoetrope:frame: 42"; lines after

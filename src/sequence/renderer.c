@@ -66,7 +66,8 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
                                    .rate = film->rate,
                                    .view = film->view,
                                    .color = film->color,
-                                   .aovs = r->aovs};
+                                   .aovs = r->aovs,
+                                   .transparent = film->transparent};
     r->checks_reuse = settings->check_reuse;
     zt_status status =
         open_parts(r, settings->threads ? settings->threads : zt_pool_core_count());
