@@ -96,14 +96,55 @@ static int interrupt(char shown[TEXT_MAX], const char *arguments, int signal_num
     return finish(pid);
 }
 
+/* The film for as many seconds as `duration` says. */
+static void write_longer(const char *path, const char *duration) {
+    char text[sizeof film + 32];
+    const char *at = strstr(film, "1 s"), *end = strstr(at + 3, "1 s"); /* it never rests */
+    snprintf(text, sizeof text, "%.*s%s%.*s%s%s", (int)(at - film), film, duration,
+             (int)(end - at - 3), at + 3, duration, end + 3);
+    write_text(path, text);
+}
+
+/* Killed at any moment, again and again, the same command ends with the same file, and nothing
+ * is left beside it. */
+static void kills(void **state) {
+    (void)state;
+    const char *const targets[] = {"film.mp4", "film.gif"};
+    srand(3);
+    write_longer("longer.yaml", "16 s");
+    for (int i = 0; i < 2; i++) {
+        char whole[64], command[128];
+        snprintf(whole, sizeof whole, "whole-%s", targets[i]);
+        snprintf(command, sizeof command, "render longer.yaml --samples 256 -o %s", whole);
+        zoetrope_succeeds(command);
+        snprintf(command, sizeof command, "render longer.yaml --samples 256 -o %s", targets[i]);
+        int killed_count = 0;
+        for (int k = 0; k < 8; k++) {
+            posix_spawn_file_actions_t actions;
+            posix_spawn_file_actions_init(&actions);
+            posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+            pid_t pid = start(&actions, command);
+            posix_spawn_file_actions_destroy(&actions);
+            usleep((useconds_t)(rand() % 400000));
+            kill(pid, SIGKILL);
+            int status;
+            assert_int_equal(waitpid(pid, &status, 0), pid);
+            killed_count += WIFSIGNALED(status);
+        }
+        assert_true(killed_count > 0);
+        zoetrope_succeeds(command);
+        assert_true(same_files(whole, targets[i]));
+        char part[80];
+        snprintf(part, sizeof part, "%s.part", targets[i]);
+        assert_false(exists(part));
+    }
+}
+
 /* An interrupted film is closed properly: it plays, and holds as many frames as was said. */
 static void interrupts(void **state) {
     (void)state;
-    char shown[TEXT_MAX], text[sizeof film + 16];
-    const char *at = strstr(film, "1 s"), *end = strstr(at + 3, "1 s"); /* it never rests */
-    snprintf(text, sizeof text, "%.*s36000 s%.*s36000 s%s", (int)(at - film), film,
-             (int)(end - at - 3), at + 3, end + 3);
-    write_text("long.yaml", text);
+    char shown[TEXT_MAX];
+    write_longer("long.yaml", "36000 s");
     const int signals[] = {SIGINT, SIGTERM};
     for (int i = 0; i < 2; i++) {
         assert_int_equal(interrupt(shown, "render long.yaml -o long.mp4", signals[i]), 130);
@@ -126,6 +167,7 @@ static void interrupts(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_DIRECTORY(closed_streams),
+        IN_DIRECTORY(kills),
         IN_DIRECTORY(interrupts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
