@@ -307,6 +307,25 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
                                        THREADS_MAX, report));
 }
 
+/* With names in its places. A film has one camera, which has no name. */
+static zt_status fill_target(char **target, const zt_options *options, zt_listener listener) {
+    int length;
+    const char *name = zt_options_name(&length, options);
+    char *own = strndup(name, (size_t)length);
+    if (!own) return ZT_EMEMORY;
+    zt_status status = zt_output_target(target, options->target, own, "camera", listener);
+    free(own);
+    return status;
+}
+
+static bool check_target(const zt_options *options, zt_report *report) {
+    char *target = NULL;
+    bool good =
+        !options->target || fill_target(&target, options, zt_report_listener(report)) == ZT_OK;
+    free(target);
+    return good;
+}
+
 static zt_request understand(zt_options *options, const arguments *sorted, zt_report *report) {
     const char *command = sorted->words[0];
     if (sorted->values[ZT_OPTION_VERSION]) {
@@ -326,7 +345,8 @@ static zt_request understand(zt_options *options, const arguments *sorted, zt_re
         zt_command_help(stderr, ZT_COMMAND_COUNT);
         return ZT_REQUEST_WRONG;
     }
-    bool good = read_values(options, sorted, report) && read_words(options, sorted, report);
+    bool good = read_values(options, sorted, report) && read_words(options, sorted, report) &&
+                check_target(options, report);
     return good ? ZT_REQUEST_RUN : ZT_REQUEST_WRONG;
 }
 
@@ -352,10 +372,13 @@ const char *zt_options_name(int *length, const zt_options *options) {
 }
 
 char *zt_options_target(const zt_options *options) {
-    if (options->target) return strdup(options->target);
+    char *target = NULL;
+    if (options->target) {
+        zt_status status = fill_target(&target, options, (zt_listener){NULL, NULL});
+        return status == ZT_OK ? target : NULL;
+    }
     int length;
     const char *name = zt_options_name(&length, options);
-    char *target = NULL;
     int printed = 0;
     switch (options->command) {
     case ZT_COMMAND_FRAME:
