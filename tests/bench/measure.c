@@ -128,6 +128,7 @@ spent run_program(char *const *arguments, int copies) {
 
 frames frames_open(const zt_animation *animation, zt_render_settings settings, int repeats) {
     frames f = {.repeats = repeats};
+    settings.no_reuse = true; /* what is measured is rendering */
     must(zt_renderer_open(&f.renderer, animation, &settings, to_stderr), "a renderer");
     zt_output_format format = zt_renderer_format(f.renderer);
     must(zt_image_create(&f.image, format.width, format.height), "an image");
