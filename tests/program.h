@@ -14,7 +14,7 @@
 
 #include "files.h"
 
-enum { TEXT_MAX = 16 * 1024, ARGUMENTS_MAX = 12 };
+enum { TEXT_MAX = 16 * 1024, ARGUMENTS_MAX = 16 };
 
 /* What a run of the program came to. */
 typedef struct run {
@@ -125,6 +125,31 @@ static inline int leave_directory(void **state) {
     int failed = chdir("/") || nftw(directory, files_remove, 8, FTW_DEPTH | FTW_PHYS);
     free(directory);
     return failed;
+}
+
+/* Arguments that cannot be, what is told of them, and how that ends. */
+typedef struct refusal {
+    const char *arguments, *told;
+    int code;
+} refusal;
+
+/* Each of them is refused so, with an error and nothing on standard output. */
+static inline void assert_refused(const refusal *cases, size_t count) {
+    for (const refusal *c = cases; c < cases + count; c++) {
+        run *r = zoetrope(c->arguments);
+        if (r->code != c->code)
+            fail_msg("zoetrope %s ended with %d: %s", c->arguments, r->code, r->err);
+        assert_contains(r->err, c->told);
+        assert_contains(r->err, "zoetrope: error: ");
+        assert_string_equal(r->out, "");
+    }
+}
+
+/* The n-th line of a text, without its newline; "" where there are not so many. */
+static inline const char *line_of(char line[256], const char *text, int n) {
+    for (; n > 0 && *text; n--) text += strcspn(text, "\n") + (strchr(text, '\n') != NULL);
+    snprintf(line, 256, "%.*s", (int)strcspn(text, "\n"), text);
+    return line;
 }
 
 /* A test that has such a directory. */

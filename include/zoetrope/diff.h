@@ -3,6 +3,7 @@
 #ifndef ZOETROPE_DIFF_H
 #define ZOETROPE_DIFF_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include <zoetrope/manifest.h>
@@ -36,6 +37,7 @@ typedef struct zt_diff {
     zt_frame_spans changed;
     zt_diff_cause *causes; /* by their frames */
     int64_t cause_count;
+    bool resettled;  /* pixels cost something else: their number, their samples, the shutter */
     int64_t *frames; /* of the newer film, that change or are new, but for those that show
                         the same as the one before, which are not rendered */
     int64_t frame_count;
@@ -57,10 +59,10 @@ typedef struct zt_diff_time {
     int measured_part;   /* at this part of the width and height: 4 is a quarter */
 } zt_diff_time;
 
-/* By what a manifest says that the same frames took; those that it does not know, as long as
- * the others on average. `manifest` may be NULL. Where it knows none, renders one or two of the
- * frames, at a quarter of their size where that is not too small to tell. Fails as rendering
- * does. */
+/* By what a manifest says that the same frames took, where that is of the same size and nothing
+ * is resettled; those that it does not know, as long as the others on average. `manifest` may
+ * be NULL. Where it tells nothing, renders one or two of the frames, at a quarter of their size
+ * where that is not too small to tell. Fails as rendering does. */
 zt_status zt_diff_estimate(zt_diff_time *time, const zt_diff *diff, const zt_manifest *manifest,
                            const zt_animation *newer, const zt_render_settings *settings,
                            const zt_watcher *watcher, zt_listener listener);

@@ -226,6 +226,8 @@ static zt_status prepare(comparing *c) {
     if (!c->ways || !c->causes || !c->diff->frames) return ZT_EMEMORY;
     for (size_t i = 0; i < slots; i++) c->causes[i] = -1;
     c->film = compare_films(c->older, c->newer);
+    c->diff->resettled = c->film & (1U << FILM_SIZE | 1U << FILM_SAMPLES | 1U << FILM_QUALITY |
+                                    1U << FILM_SHUTTER | 1U << FILM_PRECISION);
     return ZT_OK;
 }
 

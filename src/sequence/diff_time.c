@@ -7,9 +7,13 @@
 /* A picture that is a quarter as wide and high is told apart from nothing at least so small. */
 enum { PART = 4, SMALL = 160 };
 
-static void ask_manifest(zt_diff_time *time, const zt_diff *diff, const zt_manifest *manifest) {
+static void ask_manifest(zt_diff_time *time, const zt_diff *diff, const zt_manifest *manifest,
+                         int width, int height) {
+    zt_render_settings noted = {0};
     double sum_s = 0;
-    for (int64_t i = 0; manifest && i < diff->frame_count; i++) {
+    if (manifest) zt_manifest_settings(&noted, manifest);
+    if (noted.width != width || noted.height != height || diff->resettled) return;
+    for (int64_t i = 0; i < diff->frame_count; i++) {
         double took_s = zt_manifest_time(manifest, diff->frames[i]);
         if (took_s < 0) continue;
         sum_s += took_s;
@@ -50,12 +54,12 @@ zt_status zt_diff_estimate(zt_diff_time *time, const zt_diff *diff, const zt_man
                            const zt_animation *newer, const zt_render_settings *settings,
                            const zt_watcher *watcher, zt_listener listener) {
     *time = (zt_diff_time){0};
-    ask_manifest(time, diff, manifest);
-    if (time->known_count > 0 || diff->frame_count == 0) return ZT_OK;
     const zt_film *film = zt_animation_film(newer);
     zt_render_settings smaller = *settings;
     int width = settings->width ? settings->width : film->width,
         height = settings->height ? settings->height : film->height;
+    ask_manifest(time, diff, manifest, width, height);
+    if (time->known_count > 0 || diff->frame_count == 0) return ZT_OK;
     time->measured_part = width >= PART * SMALL && height >= PART ? PART : 1;
     smaller.width = width / time->measured_part;
     smaller.height = height / time->measured_part;
