@@ -149,6 +149,18 @@ static zt_view view_of(const zt_image *image, const zt_options *options) {
     return ZT_VIEW_SRGB;
 }
 
+/* Refuses light whose view is not in the images. */
+static zt_status check_view(const zt_image *image, const zt_options *options,
+                            zt_report *report) {
+    const char *name = image->info.view;
+    if (!image->linear || options->view || !name || strcmp(name, "color") != 0) return ZT_OK;
+    zt_report_say(
+        report, ZT_ERROR,
+        "the images are of a film that is shown by a view of OpenColorIO, which is not "
+        "in them; --view says by which other one they are");
+    return ZT_EARGUMENT;
+}
+
 /* The movie says of itself what the images say of theirs; else its title is their name: "film"
  * of "film.####.exr". Where they say nothing of a rate, there are 24 a second. */
 static zt_status open_movie(zt_output **output, const char *target, int64_t count,
@@ -211,6 +223,7 @@ static zt_status write_movie(const pictures *p, const char *target, const zt_opt
     zt_image *image = NULL;
     zt_output *output = NULL;
     zt_status status = read_picture(&image, p, p->numbers[0], report);
+    if (status == ZT_OK) status = check_view(image, options, report);
     if (status == ZT_OK) status = open_movie(&output, target, p->count, image, options, report);
     if (status == ZT_OK) {
         zt_progress progress = zt_progress_begin(report, p->count);

@@ -104,16 +104,17 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
     ZT_TRY(zt_settings_of_frame(&m->settings, r, m->order, frame));
     ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
     ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
-    m->last->info = (zt_image_info){.known = true,
-                                    .frame = frame,
-                                    .rate = r->format.rate,
-                                    .key = key,
-                                    .render_s = r->cost.render_s,
-                                    .seed = r->sampling.seed,
-                                    .title = m->order->title,
-                                    .description = m->order->description,
-                                    .view = zt_view_name(r->format.view),
-                                    .settings = m->settings.text};
+    m->last->info =
+        (zt_image_info){.known = true,
+                        .frame = frame,
+                        .rate = r->format.rate,
+                        .key = key,
+                        .render_s = r->cost.render_s,
+                        .seed = r->sampling.seed,
+                        .title = m->order->title,
+                        .description = m->order->description,
+                        .view = r->format.color.wished ? "color" : zt_view_name(r->format.view),
+                        .settings = m->settings.text};
     memcpy(m->last->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
     memcpy(m->last->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
     made->key = key;
