@@ -110,6 +110,32 @@ static zt_status read_model(zt_mesh *mesh, bool *has_normals, zt_models *models,
     return ZT_OK;
 }
 
+static bool same_bytes(const void *a, const void *b, int32_t count, size_t size) {
+    if (!a || !b) return a == b;
+    return memcmp(a, b, 3 * (size_t)count * size) == 0;
+}
+
+static bool same_vec3(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+static bool same_mesh(const zt_mesh *a, const zt_mesh *b) {
+    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count &&
+           same_vec3(a->origin, b->origin) &&
+           same_bytes(a->positions, b->positions, a->vertex_count, sizeof *a->positions) &&
+           same_bytes(a->triangles, b->triangles, a->triangle_count, sizeof *a->triangles) &&
+           same_bytes(a->normals, b->normals, a->vertex_count, sizeof *a->normals) &&
+           same_bytes(a->colors, b->colors, a->vertex_count, sizeof *a->colors);
+}
+
+/* Whether the last mesh is the same as one before it, of another file: then its index; else its
+ * own. */
+static int32_t find_mesh(const zt_scene *rest, const bool *have_normals) {
+    int32_t last = rest->mesh_count - 1, i = 0;
+    while (i < last && (have_normals[i] != have_normals[last] ||
+                        !same_mesh(&rest->meshes[i], &rest->meshes[last])))
+        i++;
+    return i;
+}
+
 zt_status zt_models_read(zt_models *models) {
     zt_reading *reading = models->reading;
     zt_scene *rest = &reading->animation->rest;
@@ -124,6 +150,8 @@ zt_status zt_models_read(zt_models *models) {
         if (u->first == u) {
             object->mesh = rest->mesh_count++;
             ZT_TRY(read_model(&meshes[object->mesh], &have_normals[object->mesh], models, u));
+            object->mesh = find_mesh(rest, have_normals);
+            if (object->mesh < rest->mesh_count - 1) meshes[--rest->mesh_count] = (zt_mesh){0};
         } else
             object->mesh = rest->objects[u->first->index].mesh;
         const zt_mesh *mesh = &meshes[object->mesh];
