@@ -45,6 +45,13 @@ typedef struct zt_render_job {
     void *user;
 } zt_render_job;
 
+/* Whether each pixel takes as many samples, which follow from nothing else. */
+bool zt_render_is_even(const zt_render_job *job);
+
+/* What keeps tiles of such frames from being copied from one to the next where the camera
+ * stands still, as a sentence; NULL: nothing does. */
+const char *zt_reuse_hindrance(const zt_render_job *job);
+
 typedef struct zt_render_count {
     int64_t left_out; /* samples that were not finite */
     int64_t samples;

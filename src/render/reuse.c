@@ -56,6 +56,24 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
     return ZT_OK;
 }
 
+const char *zt_reuse_hindrance(const zt_render_job *job) {
+    if (!zt_render_is_even(job))
+        return "samples go where neighbors differ: no tiles are copied from the frame before";
+    if (job->sampling.seed_fixed) return NULL;
+    if (zt_lens_moves(job->lens))
+        return "the camera moves while the shutter is open: no tiles are copied from the frame "
+               "before";
+    if (zt_lens_has_aperture(job->lens))
+        return "each frame looks through other points of the lens: no tiles are copied from "
+               "the "
+               "frame before, but with a fixed seed";
+    if (job->scene->random)
+        return "each frame looks at other points of lamps with a size: tiles that face them "
+               "are "
+               "not copied from the frame before, but with a fixed seed";
+    return NULL;
+}
+
 /* ---- what is copied -------------------------------------------------------------------------
  */
 

@@ -189,5 +189,7 @@ zt_status zt_renderer_needs(zt_renderer *r, int64_t frame,
     tell_mirrors(&t);
     ZT_TRY(tell_lights(&t, &r->frame));
     tell_rest(&t);
+    const char *hindrance = zt_reuse_hindrance(&taking.job);
+    if (hindrance) say(&t, "%s", hindrance);
     return ZT_OK;
 }
