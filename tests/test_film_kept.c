@@ -7,11 +7,55 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/file.h>
+#include <sys/wait.h>
 
 #include <cmocka.h>
 
 #include "changed_film.h"
 #include "sequence/manifest.h"
+
+static int64_t noted_size(void) {
+    struct stat there;
+    return stat("k.##.png.manifest", &there) == 0 ? (int64_t)there.st_size : 0;
+}
+
+/* Killed wherever it is, again and again, a film goes on, and in the end has the very files of
+ * one that nothing stopped, each rendered once but for what was under way. */
+static void killed_films_go_on(void **state) {
+    (void)state;
+    zt_film_result result;
+    heard h;
+    const change slow = {.settings.samples = 10000};
+    int killed_count = 0;
+    for (int i = 0; i < 4; i++) {
+        int64_t noted = noted_size();
+        pid_t pid = fork(); /* before this process has threads of any library */
+        assert_true(pid >= 0);
+        if (pid == 0)
+            _exit(render(&result, &h, "k.##.png", &slow, (zt_film_order){0}, INT64_MAX) == ZT_OK
+                      ? 0
+                      : 1);
+        int code;
+        for (int wait_ms = 0; wait_ms < 20000 && noted_size() == noted; wait_ms++) usleep(1000);
+        usleep((useconds_t)(7000 * i));
+        kill(pid, SIGKILL);
+        assert_int_equal(waitpid(pid, &code, 0), pid);
+        assert_true(WIFSIGNALED(code) || code == 0);
+        killed_count += WIFSIGNALED(code);
+    }
+    assert_int_equal(render(&result, &h, "k.##.png", &slow, (zt_film_order){0}, INT64_MAX),
+                     ZT_OK);
+    if (result.kept == 0 || killed_count < 2)
+        fail_msg("%d kept, %d killed", (int)result.kept, killed_count);
+    expect("w.##.png", &slow, 5, 7, 0);
+    for (int i = 0; i < FRAMES; i++) {
+        char killed[16], whole[16];
+        snprintf(killed, sizeof killed, "k.%02d.png", i);
+        snprintf(whole, sizeof whole, "w.%02d.png", i);
+        assert_true(same_files(killed, whole));
+    }
+    assert_false(exists("k.##.png.lock"));
+}
 
 /* There and back: frames 9 and 11 show what the first five do, frame 10 what 8 does. */
 static const change swing = {.end = "2, 1, 0], 9: [0, 1, 0], 10: [2, 1, 0], 11: [0"};
@@ -194,7 +238,8 @@ static void what_is_refused_leaves_nothing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_frames_are_rendered_once),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(killed_films_go_on),
+                                       cmocka_unit_test(equal_frames_are_rendered_once),
                                        cmocka_unit_test(finished_frames_are_verified),
                                        cmocka_unit_test(parts_stay),
                                        cmocka_unit_test(budgets_go_on),

@@ -50,7 +50,8 @@ typedef struct zt_output_plan {
     bool overwrites; /* files that are not known from the records, and whatever the records say
                       */
     /* Is told of each thing that was completed, in turn, from any thread, so that it can be
-     * found again after an interruption. May be NULL. */
+     * found again after an interruption: just before it gets its name, so that nothing has one
+     * that is not known. May be NULL. */
     zt_status (*completed)(void *user, const zt_output_record *record);
     void *user;
 } zt_output_plan;

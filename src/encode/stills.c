@@ -292,16 +292,7 @@ static zt_status make_still(void **made, void *state, const zt_image *image, int
     return status;
 }
 
-static zt_status write_file(const stills *images, const zt_bytes *bytes, const char *path) {
-    zt_aside aside;
-    ZT_TRY(zt_aside_open(&aside, path, images->listener));
-    zt_status status = zt_image_file_put(bytes, aside.path, images->listener);
-    if (status == ZT_OK) return zt_aside_keep(&aside, images->listener);
-    zt_aside_drop(&aside);
-    return status;
-}
-
-/* Tells that an image was completed. */
+/* Tells that an image is complete. */
 static zt_status record(const stills *images, const still *ready, int64_t frame,
                         const char *path) {
     const zt_output_plan *plan = images->plan;
@@ -317,16 +308,27 @@ static zt_status record(const stills *images, const still *ready, int64_t frame,
     return plan->completed(plan->user, &record);
 }
 
+/* It is told before the first file gets its name, or else one whose writer was killed just then
+ * would be a stranger's. What is told of and is not there is only made again. */
+static zt_status write_file(const stills *images, const still *ready, int64_t frame, int index,
+                            const char *path) {
+    zt_aside aside;
+    ZT_TRY(zt_aside_open(&aside, path, images->listener));
+    zt_status status = zt_image_file_put(&ready->files[index], aside.path, images->listener);
+    if (status == ZT_OK && index == 0) status = record(images, ready, frame, path);
+    if (status == ZT_OK) return zt_aside_keep(&aside, images->listener);
+    zt_aside_drop(&aside);
+    return status;
+}
+
 static zt_status write_files(stills *images, const still *ready, int64_t frame) {
-    for (int i = 0; i < images->names.count; i++) {
+    zt_status status = ZT_OK;
+    for (int i = 0; i < images->names.count && status == ZT_OK; i++) {
         char *path = zt_names_path(&images->names, frame, i);
-        zt_status status = path ? write_file(images, &ready->files[i], path) : ZT_EMEMORY;
-        if (status == ZT_OK && i == images->names.count - 1)
-            status = record(images, ready, frame, path);
+        status = path ? write_file(images, ready, frame, i, path) : ZT_EMEMORY;
         free(path);
-        ZT_TRY(status);
     }
-    return ZT_OK;
+    return status;
 }
 
 static zt_status write_still(void *state, void *made, int64_t frame) {
