@@ -273,11 +273,30 @@ static void default_targets(void **state) {
     assert_int_equal(entry_count("stills"), 7); /* and what is known of them */
 }
 
+/* Names come into the places that a target has for them; another place is a misuse. */
+static void target_places(void **state) {
+    (void)state;
+    zoetrope_succeeds(
+        "render film.yaml --frames 1 --aovs Z -o places/{name}.{camera}.{layer}.##.exr");
+    assert_true(exists("places/film.camera.rgba.01.exr"));
+    assert_true(exists("places/film.camera.depth.01.exr"));
+    run *r = zoetrope("render film.yaml -o places/{shot}.png");
+    assert_int_equal(r->code, 2);
+    assert_contains(r->err,
+                    "no {shot} for places/{shot}.png: there is {name}, {camera} and {layer}");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DIRECTORY(help_and_version), IN_DIRECTORY(misuse),          IN_DIRECTORY(mistakes),
-        IN_DIRECTORY(refusals),         IN_DIRECTORY(check),           IN_DIRECTORY(settings),
-        IN_DIRECTORY(precision),        IN_DIRECTORY(default_targets),
+        IN_DIRECTORY(help_and_version),
+        IN_DIRECTORY(misuse),
+        IN_DIRECTORY(mistakes),
+        IN_DIRECTORY(refusals),
+        IN_DIRECTORY(check),
+        IN_DIRECTORY(settings),
+        IN_DIRECTORY(precision),
+        IN_DIRECTORY(default_targets),
+        IN_DIRECTORY(target_places),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
