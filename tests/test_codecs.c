@@ -348,6 +348,45 @@ static void refusals(void **state) {
     assert_told(&h, "crf and bitrate do not go together");
 }
 
+/* Transparent films have alpha without being asked, with no fewer bits than else, where codec
+ * and container can; where not, that is said, and refused if it was asked for. */
+static void alpha_by_itself(void **state) {
+    (void)state;
+    static const struct {
+        const char *target, *codec, *pixels, *opaque_pixels;
+    } cases[] = {{"a.mov", "prores4444", "yuva444p10le", "yuv444p10le"},
+                 {"a.webm", "vp9", "yuva420p", "yuv420p"},
+                 {"a.mkv", "vp9", "yuva420p", "yuv420p"},
+                 {"a.mp4", "vp9", "yuv420p", "yuv420p"},
+                 {"a.mkv", "ffv1", "gbrap16le", "gbrp10le"},
+                 {"a.apng", "apng", "rgba", "rgb24"},
+                 {"a.gif", "gif", "bgra", "pal8"},
+                 {"a.mp4", "h264", "yuv420p", "yuv420p"},
+                 {"a.mov", "prores", "yuv422p10le", "yuv422p10le"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const zt_output_option options[] = {{"codec", cases[i].codec}, {NULL, NULL}};
+        for (int transparent = 0; transparent < 2; transparent++) {
+            zt_output_format own = format;
+            zt_video_choice choice;
+            heard h;
+            const zt_video_ear ear = {cases[i].target, listener_of(&h)};
+            own.transparent = transparent;
+            assert_int_equal(zt_video_choose(&choice, &own, options, &ear), ZT_OK);
+            assert_string_equal(av_get_pix_fmt_name(choice.pixels),
+                                transparent ? cases[i].pixels : cases[i].opaque_pixels);
+            bool lost = transparent && strcmp(cases[i].pixels, cases[i].opaque_pixels) == 0;
+            assert_true((strstr(h.text, "what is transparent becomes black") != NULL) == lost);
+        }
+    }
+    const zt_output_option asked[] = {
+        {"codec", "vp9"}, {"pixel-format", "yuva420p"}, {NULL, NULL}};
+    zt_video_choice choice;
+    heard h;
+    const zt_video_ear ear = {"a.mp4", listener_of(&h)};
+    assert_int_equal(zt_video_choose(&choice, &format, asked, &ear), ZT_EUNSUPPORTED);
+    assert_told(&h, ".mp4 has no place for the alpha of VP9");
+}
+
 /* A film for which there is clearly no room is refused before its first frame. */
 static void no_room(void **state) {
     (void)state;
@@ -725,11 +764,17 @@ static void views_are_tagged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_ways),    cmocka_unit_test(views_are_tagged),
-        cmocka_unit_test(same_bits),   cmocka_unit_test(refusals),
-        cmocka_unit_test(no_room),     cmocka_unit_test(options_count),
-        cmocka_unit_test(metadata),    cmocka_unit_test(sound),
-        cmocka_unit_test(check_finds), cmocka_unit_test(told_when_closed),
+        cmocka_unit_test(all_ways),
+        cmocka_unit_test(views_are_tagged),
+        cmocka_unit_test(same_bits),
+        cmocka_unit_test(refusals),
+        cmocka_unit_test(alpha_by_itself),
+        cmocka_unit_test(no_room),
+        cmocka_unit_test(options_count),
+        cmocka_unit_test(metadata),
+        cmocka_unit_test(sound),
+        cmocka_unit_test(check_finds),
+        cmocka_unit_test(told_when_closed),
     };
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
