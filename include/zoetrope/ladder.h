@@ -35,6 +35,7 @@ typedef struct zt_rung {
     double frame_s; /* wall time of a frame: all stages but writing */
     double cpu_s;   /* of all threads, for a frame */
     double primary_rays, shadow_rays, mirror_rays;
+    double shadow_rays_avoided, mirror_rays_avoided; /* as in zt_ray_stats */
     double peak_bytes;   /* the most memory of the process meanwhile, its largest value */
     double left_out;     /* samples of a frame that were not finite */
     zt_difference error; /* its rmse is the root of the mean square */

@@ -22,6 +22,8 @@ static const column columns[] = {
     {"primary_rays", offsetof(zt_rung, primary_rays)},
     {"shadow_rays", offsetof(zt_rung, shadow_rays)},
     {"mirror_rays", offsetof(zt_rung, mirror_rays)},
+    {"shadow_rays_avoided", offsetof(zt_rung, shadow_rays_avoided)},
+    {"mirror_rays_avoided", offsetof(zt_rung, mirror_rays_avoided)},
     {"peak_bytes", offsetof(zt_rung, peak_bytes)},
     {"rmse", offsetof(zt_rung, error.rmse)},
     {"relative_mse", offsetof(zt_rung, error.relative_mse)},
@@ -139,6 +141,19 @@ static void print_advice(FILE *out, const zt_findings *f) {
     fputs("  ],\n", out);
 }
 
+/* Which of them were needed. */
+static void print_libraries(FILE *out) {
+    zt_library libraries[ZT_LIBRARY_COUNT];
+    zt_libraries(libraries);
+    fputs("  \"libraries\": {", out);
+    for (int i = 0; i < ZT_LIBRARY_COUNT; i++)
+        fprintf(out, "%s\"%s\": \"%s\"", i ? ", " : " ", libraries[i].name,
+                !libraries[i].built   ? "not built"
+                : libraries[i].loaded ? "loaded"
+                                      : "not loaded");
+    fputs(" },\n", out);
+}
+
 void zt_table_json(FILE *out, const zt_findings *f) {
     const zt_ladder *ladder = f->ladder;
     fputs("{\n  \"zoetrope\": \"" ZT_VERSION "\",\n  \"file\": ", out);
@@ -164,6 +179,7 @@ void zt_table_json(FILE *out, const zt_findings *f) {
     fputs("],\n", out);
     print_references(out, ladder);
     print_advice(out, f);
+    print_libraries(out);
     fputs("  \"rungs\": [\n", out);
     for (int i = 0; i < ladder->rung_count; i++) {
         print_rung(out, f, &ladder->rungs[i]);

@@ -161,6 +161,8 @@ static void add_cost(zt_rung *rung, const cost *k, double write_s, double pixels
     rung->primary_rays += (double)k->frame.rays.primary;
     rung->shadow_rays += (double)k->frame.rays.shadow;
     rung->mirror_rays += (double)k->frame.rays.mirror;
+    rung->shadow_rays_avoided += (double)k->frame.rays.shadow_avoided;
+    rung->mirror_rays_avoided += (double)k->frame.rays.mirror_avoided;
     rung->samples += (double)k->frame.rays.primary / pixels;
     rung->peak_bytes = fmax(rung->peak_bytes, (double)zt_usage_peak());
     rung->left_out += (double)k->frame.left_out_count;
@@ -240,6 +242,8 @@ static void average(zt_ladder *ladder, int pairs) {
                            &rung->primary_rays,
                            &rung->shadow_rays,
                            &rung->mirror_rays,
+                           &rung->shadow_rays_avoided,
+                           &rung->mirror_rays_avoided,
                            &rung->samples,
                            &rung->left_out,
                            &rung->error.rmse,
@@ -327,7 +331,7 @@ static zt_status climb_all(climb *c) {
 static zt_status open_and_climb(climb *c) {
     zt_render_settings settings = c->settings->render;
     settings.no_reuse = true; /* what is measured is rendering */
-    settings.samples = 0; /* each rung has its own */
+    settings.samples = 0;     /* each rung has its own */
     ZT_TRY(zt_renderer_open(&c->renderer, c->animation, &settings, c->listener));
     zt_output_format format = zt_renderer_format(c->renderer);
     c->ladder->width = format.width;
