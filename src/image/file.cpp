@@ -64,9 +64,11 @@ bool write_floats(OIIO::ImageOutput &output, const zt_image *image, const Part &
     OIIO::TypeDesc type = spec.channelformat(0);
     float most = type == OIIO::TypeDesc::HALF ? half_max : FLT_MAX;
     std::vector<float> colours(pixel_count * colour_count);
-    for (size_t i = 0; i < colours.size(); i++)
-        colours[i] =
-            OIIO::clamp(image->pixels[i / colour_count * 4 + i % colour_count], -most, most);
+    float *colour = colours.data();
+    for (const float *pixel = image->pixels; pixel < image->pixels + 4 * pixel_count;
+         pixel += 4)
+        for (size_t c = 0; c < colour_count; c++)
+            *colour++ = OIIO::clamp(pixel[c], -most, most);
     if (part.channels.empty()) return output.write_image(OIIO::TypeDesc::FLOAT, colours.data());
     size_t colour_bytes = colour_count * type.size();
     Bytes stored(pixel_count * colour_bytes), bytes(pixel_count * pixel_bytes);

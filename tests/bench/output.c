@@ -164,6 +164,7 @@ static spent pipe_to_ffmpeg(void *user) {
     size_t size = row * (size_t)f.image->height;
     uint8_t *bytes = malloc(size);
     must_be(bytes != NULL, "out of memory");
+    const zt_developing how = {.view = zt_renderer_format(f.renderer).view};
     pid_t child;
     int status;
     struct rusage usage;
@@ -172,10 +173,9 @@ static spent pipe_to_ffmpeg(void *user) {
     for (int i = 0; i < FRAME_COUNT; i++) {
         frames_run(&f);
         if (t->bits == 8)
-            zt_develop_rgb8(bytes, row, f.image, ZT_VIEW_RAW, 0, f.image->height);
+            zt_develop_8(bytes, row, f.image, &how, 0, f.image->height);
         else
-            zt_develop_rgb16((uint16_t *)(void *)bytes, row, f.image, ZT_VIEW_RAW, 0,
-                             f.image->height);
+            zt_develop_16((uint16_t *)(void *)bytes, row, f.image, &how, 0, f.image->height);
         write_all(pipe, bytes, size);
     }
     close(pipe);
