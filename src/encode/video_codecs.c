@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <libavutil/cpu.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 
@@ -72,6 +73,9 @@ static const zt_codec codecs[] = {
      .preset_option = "preset",
      .preset = "veryfast",
      .settings = {{"x264-params", "force-cfr=1", NULL}},
+     /* x264's own AVX-512 reads memory that nobody wrote, where rows are no multiple of 128
+      * pixels: of the same film it makes other bits each time. */
+     .avx512_params = "asm=MMX2,SSE,SSE2,SSSE3,SSE4.2,AVX,FMA3,AVX2,BMI1,BMI2,LZCNT",
      .thread_count = 4, /* takes a tenth more of the cores than one does */
      .bits_a_pixel = 0.1},
     {.name = "h265",
@@ -402,12 +406,23 @@ static void list_options(names *known, void *context) {
             add_name(known, o->name);
 }
 
+static bool is_list(const char *name) { return zt_text_ends_with(name, "-params", false); }
+
+/* What a row sets, on this machine. */
+static char *own_value(const zt_codec *codec, const zt_codec_setting *s) {
+    const char *more = av_get_cpu_flags() & AV_CPU_FLAG_AVX512 ? codec->avx512_params : NULL;
+    return more && is_list(s->name) ? zt_text_print("%s:%s", s->value, more) : strdup(s->value);
+}
+
 /* A row's own setting of the same name stays in force where both are lists of parameters. */
 static char *join_values(const zt_codec *codec, const char *name, const char *value) {
-    if (zt_text_ends_with(name, "-params", false))
-        for (const zt_codec_setting *s = codec->settings; s->name; s++)
-            if (zt_text_equal(s->name, name)) return zt_text_print("%s:%s", s->value, value);
-    return strdup(value);
+    const zt_codec_setting *s = codec->settings;
+    while (s->name && !zt_text_equal(s->name, name)) s++;
+    if (!s->name || !is_list(name)) return strdup(value);
+    char *own = own_value(codec, s);
+    char *joined = own ? zt_text_print("%s:%s", own, value) : NULL;
+    free(own);
+    return joined;
 }
 
 static zt_status apply_option(AVCodecContext *encoder, const zt_video_choice *choice,
@@ -446,9 +461,14 @@ zt_status zt_video_configure(AVCodecContext *encoder, const zt_video_choice *cho
     encoder->thread_count = codec->thread_count;
     encoder->bit_rate = choice->bitrate;
     if (codec->tag && choice->container->has_boxes) encoder->codec_tag = codec->tag;
-    for (const zt_codec_setting *s = codec->settings; s->name; s++)
-        if (!s->pixels || zt_text_equal(s->pixels, pixels))
-            AV_TRY(ear, av_opt_set(encoder, s->name, s->value, AV_OPT_SEARCH_CHILDREN));
+    for (const zt_codec_setting *s = codec->settings; s->name; s++) {
+        if (s->pixels && !zt_text_equal(s->pixels, pixels)) continue;
+        char *value = own_value(codec, s);
+        if (!value) return ZT_EMEMORY;
+        int error = av_opt_set(encoder, s->name, value, AV_OPT_SEARCH_CHILDREN);
+        free(value);
+        AV_TRY(ear, error);
+    }
     if (choice->preset)
         AV_TRY(ear, av_opt_set(encoder, codec->preset_option, choice->preset,
                                AV_OPT_SEARCH_CHILDREN));

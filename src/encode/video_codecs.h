@@ -50,11 +50,13 @@ typedef struct zt_codec {
     const char *const *presets; /* from the fastest to the slowest; NULL: none */
     const char *preset_option, *preset;
     zt_codec_setting settings[7];
-    int thread_count;    /* fixed: what comes out may depend on it */
-    uint32_t tag;        /* in MP4 and MOV; 0: by the muxer */
-    bool lossless;       /* the decoded pixels are those that were sent */
-    bool palette;        /* made from the film */
-    double bits_a_pixel; /* of a usual film */
+    const char *avx512_params; /* that "-params" among them have besides on processors with
+                                  AVX-512; NULL: none */
+    int thread_count;          /* fixed: what comes out may depend on it */
+    uint32_t tag;              /* in MP4 and MOV; 0: by the muxer */
+    bool lossless;             /* the decoded pixels are those that were sent */
+    bool palette;              /* made from the film */
+    double bits_a_pixel;       /* of a usual film */
 } zt_codec;
 
 /* What was chosen, all of it known to exist and to fit together. The texts are the options'. */
