@@ -52,6 +52,10 @@ static void comes_again(void **state) {
     assert_comes_again("--format-option bits=float", "a.tif");
     zoetrope_succeeds("frame film.yaml 5 -o b.exr");
     zoetrope_succeeds("reproduce b.exr");
+    zoetrope_succeeds("frame film.yaml 5 --aovs Z,N -o c.{layer}.exr");
+    zoetrope_succeeds("reproduce c.rgba.exr");
+    zoetrope_succeeds("reproduce c.depth.exr");
+    zoetrope_succeeds("reproduce c.N.exr");
 }
 
 /* Samples that a budget of time chose are each frame's own, and held frames' too. */
@@ -223,6 +227,7 @@ static void settings_are_read_again(void **state) {
                                   .precision = ZT_PRECISION_DOUBLE,
                                   .aovs = ZT_AOV_Z | ZT_AOV_ERROR,
                                   .view = ZT_VIEW_FILMIC,
+                                  .color = {true, "a b.ocio", NULL, "Film"},
                                   .format = "bits=half,tile=64",
                                   .overrides = overrides,
                                   .override_count = 2,
@@ -247,6 +252,9 @@ static void settings_are_read_again(void **state) {
     assert_int_equal(read.precision, ZT_PRECISION_DOUBLE);
     assert_int_equal(read.aovs, ZT_AOV_Z | ZT_AOV_ERROR);
     assert_int_equal(read.view, ZT_VIEW_FILMIC);
+    assert_true(read.color.wished && !read.color.display);
+    assert_string_equal(read.color.config, "a b.ocio");
+    assert_string_equal(read.color.view, "Film");
     assert_string_equal(read.format, "bits=half,tile=64");
     assert_string_equal(read.arithmetic, "some \"version\"");
     assert_int_equal(read.override_count, 2);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <zoetrope/animation.h>
+#include <zoetrope/color.h>
 #include <zoetrope/image.h>
 #include <zoetrope/renderer.h>
 #include <zoetrope/status.h>
@@ -29,10 +30,19 @@ typedef struct zt_origin {
 zt_status zt_origin_read(zt_origin **origin, const char *path, zt_listener listener);
 void zt_origin_free(zt_origin **origin);
 
-/* What a movie of an image that was read says of its settings: what the image does, but for how
- * its own file is written, with this view. Of the caller to free; NULL where the image says
- * nothing of them that can be read, or when out of memory. */
-char *zt_origin_settings(const zt_image *image, zt_view view);
+/* How a movie of images that were read shows them, and what it says of its settings: as the
+ * film does that they are of. */
+typedef struct zt_look {
+    zt_view
+        view; /* raw where the images are for a display already; srgb where they say nothing */
+    zt_color_wish color;
+    const char *settings; /* those of the image, but for how its file is written; or NULL */
+} zt_look;
+
+/* `view` counts instead of the images' own where it is not NULL. ZT_EMEMORY. The caller frees
+ * it. */
+zt_status zt_look_find(zt_look **look, const zt_image *image, const zt_view *view);
+void zt_look_free(zt_look **look);
 
 /* A number of a pixel that is not as it was. */
 typedef struct zt_deviation {

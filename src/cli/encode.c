@@ -141,24 +141,13 @@ static zt_status read_picture(zt_image **image, const pictures *p, int64_t numbe
     return status;
 }
 
-/* How linear light is shown: as was asked for, or as the film that the image is of has it. */
-static zt_view view_of(const zt_image *image, const zt_options *options) {
-    const char *name = options->view ? options->view : image->info.view;
-    for (int v = 0; name && v < ZT_VIEW_COUNT; v++)
-        if (strcmp(zt_view_name((zt_view)v), name) == 0) return (zt_view)v;
-    return ZT_VIEW_SRGB;
-}
-
-/* Refuses light whose view is not in the images. */
-static zt_status check_view(const zt_image *image, const zt_options *options,
-                            zt_report *report) {
-    const char *name = image->info.view;
-    if (!image->linear || options->view || !name || strcmp(name, "color") != 0) return ZT_OK;
-    zt_report_say(
-        report, ZT_ERROR,
-        "the images are of a film that is shown by a view of OpenColorIO, which is not "
-        "in them; --view says by which other one they are");
-    return ZT_EARGUMENT;
+/* How light is shown: as was asked for, or as the film has it that the image is of. */
+static zt_status find_look(zt_look **look, const zt_image *image, const zt_options *options) {
+    int v = 0;
+    if (!options->view) return zt_look_find(look, image, NULL);
+    while (strcmp(zt_view_name((zt_view)v), options->view) != 0) v++; /* it is one of them */
+    const zt_view view = (zt_view)v;
+    return zt_look_find(look, image, &view);
 }
 
 /* The movie says of itself what the images say of theirs; else its title is their name: "film"
@@ -167,29 +156,27 @@ static zt_status open_movie(zt_output **output, const char *target, int64_t coun
                             const zt_image *image, const zt_options *options,
                             zt_report *report) {
     const zt_image_info *info = &image->info;
-    zt_view view = image->linear ? view_of(image, options) : ZT_VIEW_RAW;
     int length;
     const char *name = zt_options_name(&length, options);
     char *title = info->title ? strdup(info->title) : strndup(name, (size_t)length);
-    char *settings = zt_origin_settings(image, view);
-    if (!title) {
-        free(settings);
-        return ZT_EMEMORY;
+    zt_look *look = NULL;
+    zt_status status = title ? find_look(&look, image, options) : ZT_EMEMORY;
+    if (status == ZT_OK) {
+        zt_output_format format = {.width = image->width,
+                                   .height = image->height,
+                                   .rate = info->known ? info->rate : (zt_rate){24, 1},
+                                   .view = look->view,
+                                   .color = look->color,
+                                   .transparent = image->transparent,
+                                   .frame_count = count,
+                                   .settings = look->settings,
+                                   .description = info->description};
+        if (options->rate.num > 0) format.rate = options->rate;
+        zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", title}};
+        memcpy(wishes + 1, options->output_options, sizeof options->output_options);
+        status = zt_output_open(output, target, &format, wishes, zt_report_listener(report));
     }
-    zt_output_format format = {.width = image->width,
-                               .height = image->height,
-                               .rate = info->known ? info->rate : (zt_rate){24, 1},
-                               .view = view,
-                               .transparent = image->transparent,
-                               .frame_count = count,
-                               .settings = settings,
-                               .description = info->description};
-    if (options->rate.num > 0) format.rate = options->rate;
-    zt_output_option wishes[ZT_OUTPUT_OPTIONS_MAX + 2] = {{"title", title}};
-    memcpy(wishes + 1, options->output_options, sizeof options->output_options);
-    zt_status status =
-        zt_output_open(output, target, &format, wishes, zt_report_listener(report));
-    free(settings);
+    zt_look_free(&look);
     free(title);
     return status;
 }
@@ -223,7 +210,6 @@ static zt_status write_movie(const pictures *p, const char *target, const zt_opt
     zt_image *image = NULL;
     zt_output *output = NULL;
     zt_status status = read_picture(&image, p, p->numbers[0], report);
-    if (status == ZT_OK) status = check_view(image, options, report);
     if (status == ZT_OK) status = open_movie(&output, target, p->count, image, options, report);
     if (status == ZT_OK) {
         zt_progress progress = zt_progress_begin(report, p->count);

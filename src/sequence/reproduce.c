@@ -9,7 +9,9 @@
 
 #include "base/diag.h"
 #include "base/text.h"
+#include "image/color.h"
 #include "image/file.h"
+#include "image/layers.h"
 #include "sequence/renderer.h"
 #include "sequence/settings.h"
 
@@ -61,20 +63,51 @@ void zt_origin_free(zt_origin **slot) {
     *slot = NULL;
 }
 
-char *zt_origin_settings(const zt_image *image, zt_view view) {
-    zt_arena arena = {0};
+typedef struct look_memory {
+    zt_look look; /* comes first: it is what others see */
+    zt_arena arena;
+} look_memory;
+
+/* What an image says of its settings; false where that is nothing that can be read. */
+static bool read_settings(zt_settings *settings, const zt_image *image, zt_arena *arena) {
+    return image->info.known && image->info.settings &&
+           zt_settings_read(settings, image->info.settings, "", arena, (zt_listener){0}) ==
+               ZT_OK;
+}
+
+zt_status zt_look_find(zt_look **out, const zt_image *image, const zt_view *view) {
+    look_memory *m = calloc(1, sizeof *m);
     zt_settings settings;
-    const char *text = NULL;
-    char *own = NULL;
-    if (image->info.known && image->info.settings &&
-        zt_settings_read(&settings, image->info.settings, "", &arena, (zt_listener){0}) ==
-            ZT_OK) {
-        settings.format = NULL;
-        settings.view = view;
-        if (zt_settings_print(&text, &settings, &arena) == ZT_OK) own = strdup(text);
+    zt_status status = ZT_OK;
+    *out = NULL;
+    if (!m) return ZT_EMEMORY;
+    bool known = read_settings(&settings, image, &m->arena);
+    m->look.view = known ? settings.view : ZT_VIEW_SRGB;
+    if (known) m->look.color = settings.color;
+    if (view) {
+        m->look.view = *view;
+        m->look.color.wished = false;
     }
-    zt_arena_free(&arena);
-    return own;
+    if (known) {
+        settings.format = NULL;
+        settings.view = m->look.view;
+        settings.color = m->look.color;
+        status = zt_settings_print(&m->look.settings, &settings, &m->arena);
+    }
+    if (!image->linear) {
+        m->look.view = ZT_VIEW_RAW;
+        m->look.color.wished = false;
+    }
+    *out = &m->look;
+    if (status != ZT_OK) zt_look_free(out);
+    return status;
+}
+
+void zt_look_free(zt_look **look) {
+    if (!*look) return;
+    zt_arena_free(&((look_memory *)*look)->arena);
+    free(*look);
+    *look = NULL;
 }
 
 /* ---- comparing -----------------------------------------------------------------------------
@@ -149,16 +182,48 @@ static zt_status compare(zt_reproduction *r, const zt_origin *o, const zt_image 
 /* ---- rendering -----------------------------------------------------------------------------
  */
 
-/* What comes of an image that is written as the file was. */
-static zt_status store_and_read(zt_image **stored, const zt_origin *o, const zt_image *image,
-                                zt_listener listener) {
-    const struct zt_origin_memory *m = o->memory;
-    zt_image_wishes wishes;
+/* Compares with what comes of an image that is written as the file was. */
+static zt_status compare_stored(zt_reproduction *r, const zt_origin *o, const zt_image *image,
+                                const zt_image_wishes *wishes, zt_listener listener) {
     zt_bytes bytes;
-    ZT_TRY(zt_image_wish(&wishes, o->path, m->options, listener));
-    ZT_TRY(zt_image_file_encode(&bytes, image, m->settings.view, &wishes, o->path, listener));
-    zt_status status = zt_image_file_decode(stored, &bytes, o->path, listener);
+    zt_image *stored = NULL;
+    ZT_TRY(zt_image_file_encode(&bytes, image, o->memory->settings.view, wishes, o->path,
+                                listener));
+    zt_status status = zt_image_file_decode(&stored, &bytes, o->path, listener);
     free(bytes.data);
+    if (status == ZT_OK) status = compare(r, o, stored, listener);
+    zt_image_free(&stored);
+    return status;
+}
+
+/* A file of one layer does not say which: it is the one from which it differs least. */
+static zt_status compare_layers(zt_reproduction *r, const zt_origin *o, const zt_image *image,
+                                zt_image_wishes *wishes) {
+    for (int c = 0; c < image->channel_count && r->different_count > 0; c++) {
+        char layer[ZT_LAYER_NAME_MAX];
+        zt_reproduction other = *r;
+        other.different_count = other.first_count = 0;
+        zt_layer_of(layer, image->channels[c].name);
+        wishes->layer = layer;
+        zt_status status = compare_stored(&other, o, image, wishes, (zt_listener){0});
+        if (status == ZT_EFILE) continue; /* it has other channels */
+        ZT_TRY(status);
+        if (other.different_count < r->different_count) *r = other;
+    }
+    return ZT_OK;
+}
+
+static zt_status compare_written(zt_reproduction *r, const zt_origin *o,
+                                 const zt_renderer *renderer, const zt_image *image,
+                                 zt_listener listener) {
+    zt_image_wishes wishes;
+    zt_color *color = NULL;
+    ZT_TRY(zt_image_wish(&wishes, o->path, o->memory->options, listener));
+    if (!o->image->linear) ZT_TRY(zt_color_open(&color, &renderer->format.color, listener));
+    wishes.color = color;
+    zt_status status = compare_stored(r, o, image, &wishes, listener);
+    if (status == ZT_OK) status = compare_layers(r, o, image, &wishes);
+    zt_color_close(&color);
     return status;
 }
 
@@ -177,13 +242,11 @@ static zt_status render(zt_reproduction *r, zt_image *image, const zt_origin *o,
 
 static zt_status reproduce(zt_reproduction *r, const zt_origin *o, zt_renderer *renderer,
                            const zt_watcher *watcher, zt_listener listener) {
-    zt_image *image = NULL, *stored = NULL;
+    zt_image *image = NULL;
     ZT_TRY(zt_image_create(&image, o->image->width, o->image->height));
     zt_status status = render(r, image, o, renderer, watcher);
-    if (status == ZT_OK) status = store_and_read(&stored, o, image, listener);
-    if (status == ZT_OK) status = compare(r, o, stored, listener);
+    if (status == ZT_OK) status = compare_written(r, o, renderer, image, listener);
     zt_image_free(&image);
-    zt_image_free(&stored);
     return status;
 }
 

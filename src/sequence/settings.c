@@ -30,6 +30,7 @@ enum {
     KEY_SEED_FIXED,
     KEY_PRECISION,
     KEY_VIEW,
+    KEY_COLOR,
     KEY_AOVS,
     KEY_FORMAT,
     KEY_SET,
@@ -37,9 +38,9 @@ enum {
 };
 
 static const char *const keys[KEY_COUNT + 1] = {
-    "zoetrope",  "arithmetic", "size",   "min",          "max",  "error",
-    "mean_max",  "quality",    "filter", "filter_width", "seed", "seed_fixed",
-    "precision", "view",       "aovs",   "format",       "set",  NULL};
+    "zoetrope", "arithmetic", "size",         "min",  "max",        "error",     "mean_max",
+    "quality",  "filter",     "filter_width", "seed", "seed_fixed", "precision", "view",
+    "color",    "aovs",       "format",       "set",  NULL};
 
 /* ---- writing -------------------------------------------------------------------------------
  */
@@ -102,6 +103,13 @@ static void print_aovs(FILE *file, unsigned aovs) {
     print_end(file, begun);
 }
 
+static void print_color(FILE *file, const zt_color_wish *color) {
+    const char *const words[] = {color->config, color->display, color->view};
+    bool begun = false;
+    for (int i = 0; i < 3; i++) print_item(file, KEY_COLOR, &begun, words[i] ? words[i] : "");
+    print_end(file, begun);
+}
+
 static void print(FILE *file, const zt_settings *s) {
     print_integer(file, KEY_VERSION, 1);
     print_word(file, KEY_ARITHMETIC, s->arithmetic);
@@ -110,6 +118,7 @@ static void print(FILE *file, const zt_settings *s) {
     print_sampling(file, &s->sampling);
     print_word(file, KEY_PRECISION, zt_precision_name(s->precision));
     print_word(file, KEY_VIEW, zt_view_name(s->view));
+    if (s->color.wished) print_color(file, &s->color);
     print_aovs(file, s->aovs);
     if (s->format) print_word(file, KEY_FORMAT, s->format);
     bool begun = false;
@@ -152,6 +161,7 @@ static zt_status print_of(const char **text, const zt_renderer *r, const zt_film
                                   .precision = r->precision,
                                   .aovs = r->aovs,
                                   .view = r->format.view,
+                                  .color = r->format.color,
                                   .format = format,
                                   .overrides = order->overrides,
                                   .override_count = order->override_count,
@@ -251,6 +261,17 @@ static zt_status read_aovs(reading *r) {
     return ZT_OK;
 }
 
+static zt_status read_color(reading *r) {
+    const char **words;
+    int count;
+    ZT_TRY(read_list(&words, &count, r));
+    if (count != 3) return zt_json_refuse(&r->json, "here must be three texts");
+    for (int i = 0; i < 3; i++)
+        if (!*words[i]) words[i] = NULL;
+    r->s->color = (zt_color_wish){true, words[0], words[1], words[2]};
+    return ZT_OK;
+}
+
 static zt_status read_overrides(reading *r) {
     const char **texts;
     int count;
@@ -315,6 +336,8 @@ static zt_status read_field(reading *r, int key) {
     case KEY_SEED_FIXED:
         s->seed_fixed = true;
         return zt_json_integer(&r->json, &number, 1, 1);
+    case KEY_COLOR:
+        return read_color(r);
     case KEY_AOVS:
         return read_aovs(r);
     case KEY_FORMAT:

@@ -7,6 +7,7 @@
 #include <zoetrope/precision.h>
 #include <zoetrope/wish.h>
 
+#include <zoetrope/color.h>
 #include <zoetrope/film.h>
 
 #include "base/arena.h"
@@ -18,7 +19,8 @@ typedef struct zt_settings {
     zt_precision precision; /* as it was asked for */
     unsigned aovs;          /* bits of zt_aov */
     zt_view view;
-    const char *format; /* of an image's file, as zt_image_wishes_text() has it; or NULL */
+    zt_color_wish color; /* that counts instead of the view, if it is wished */
+    const char *format;  /* of an image's file, as zt_image_wishes_text() has it; or NULL */
     const zt_override *overrides;
     int override_count;
     const char *arithmetic; /* its version */
@@ -31,7 +33,8 @@ typedef struct zt_settings {
  * "auto", "view": "srgb", "aovs": ["Z"], "format": "bits=half", "set": ["lamp.intensity",
  * "40"]}
  *
- * "quality": "edges", "mean_max" and "seed_fixed" are there where they say something. */
+ * "quality": "edges", "mean_max", "seed_fixed" and "color": [config, display, view], with ""
+ * for what is not said, are there where they say something. */
 zt_status zt_settings_print(const char **text, const zt_settings *settings, zt_arena *arena);
 
 /* The text of a film as a whole, in the arena: samples are those that frames take where nothing
