@@ -49,10 +49,20 @@ static void linear(void **state) {
  * What is there already is not replaced unasked. */
 static void view(void **state) {
     (void)state;
-    zoetrope_succeeds("render film.yaml --frames 0-1 --view filmic -o filmic.mp4");
-    zoetrope_succeeds("render film.yaml --frames 0-1 --view filmic -o film.####.exr");
-    zoetrope_succeeds("encode film.####.exr -o again.mp4");
-    assert_true(same_files("filmic.mp4", "again.mp4"));
+    static const char *const views[] = {"raw", "srgb", "rec709", "filmic"};
+    static const char *const commands[] = {
+        "render film.yaml --frames 0-1 --view %s -o filmic.mp4%s",
+        "render film.yaml --frames 0-1 --view %s -o film.####.exr%s",
+        "encode film.####.exr -o again.mp4%.0s%s"};
+    for (int v = 0; v < 4; v++) {
+        for (int c = 0; c < 3; c++) {
+            char arguments[128];
+            snprintf(arguments, sizeof arguments, commands[c], views[v],
+                     v > 0 ? " --overwrite" : "");
+            zoetrope_succeeds(arguments);
+        }
+        assert_true(same_files("filmic.mp4", "again.mp4"));
+    }
     run *r = zoetrope("encode film.####.exr -o again.mp4 --view srgb");
     assert_int_equal(r->code, 3);
     assert_contains(r->err, "again.mp4 exists; with --overwrite it is replaced");
@@ -63,6 +73,25 @@ static void view(void **state) {
     zoetrope_succeeds("frame film.yaml 1 -o a.####.png");
     zoetrope_succeeds("encode a.####.png -o a.hash");
     assert_true(same_files("a.hash", "b.hash"));
+}
+
+/* So it is with a view of OpenColorIO, which counts until another one is asked for. */
+static void color(void **state) {
+    (void)state;
+    write_text("a.ocio",
+               "ocio_profile_version: 1\nroles: { scene_linear: light }\n"
+               "displays: { screen: [ !<View> { name: plain, colorspace: dim } ] }\n"
+               "colorspaces:\n  - !<ColorSpace> { name: light }\n"
+               "  - !<ColorSpace>\n    name: dim\n    from_reference: !<ExponentTransform> "
+               "{ value: [ 2, 2, 2, 1 ] }\n");
+    zoetrope_succeeds(
+        "render film.yaml --frames 0-1 --set film.color={\"config\":a.ocio} -o a.mp4");
+    zoetrope_succeeds(
+        "render film.yaml --frames 0-1 --set film.color={\"config\":a.ocio} -o film.####.exr");
+    zoetrope_succeeds("encode film.####.exr -o b.mp4");
+    assert_true(same_files("a.mp4", "b.mp4"));
+    zoetrope_succeeds("encode film.####.exr --view raw -o c.mp4");
+    assert_false(same_files("a.mp4", "c.mp4"));
 }
 
 /* Images for a display go as they are: numbers that are developed once more would differ. */
@@ -135,8 +164,8 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DIRECTORY(linear), IN_DIRECTORY(view),     IN_DIRECTORY(display),
-        IN_DIRECTORY(alpha),  IN_DIRECTORY(refusals),
+        IN_DIRECTORY(linear),  IN_DIRECTORY(view),  IN_DIRECTORY(color),
+        IN_DIRECTORY(display), IN_DIRECTORY(alpha), IN_DIRECTORY(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
