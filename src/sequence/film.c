@@ -83,8 +83,7 @@ static zt_status note_record(void *user, const zt_output_record *record) {
     return zt_notes_add(&m->notes, &line);
 }
 
-/* An image goes out: its checksum is known from here on. Of images of their own the output
- * tells later, when they are complete. From any thread. */
+/* An image goes out, by any thread. Of one of its own the output tells when it is complete. */
 static zt_status note_image(void *user, const zt_image *image) {
     making *m = user;
     if (!m->remembers && !m->timed) return ZT_OK;

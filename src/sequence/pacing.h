@@ -8,7 +8,7 @@
 
 /* A budget that is being spent. */
 struct zt_pacing {
-    zt_plan plan; /* its frames are its own */
+    zt_plan plan;   /* its frames are its own */
     double begun_s; /* by the clock */
     int64_t next;   /* the position of the frame that has its turn */
 };
