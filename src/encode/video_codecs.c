@@ -11,186 +11,7 @@
 
 #include "base/text.h"
 
-static const zt_container containers[] = {
-    {.ending = ".mp4",
-     .muxer = "mp4",
-     .settings = "synopsis",
-     .codec = "h264",
-     .sound = "aac",
-     .takes_sound = {AV_CODEC_ID_AAC, AV_CODEC_ID_MP3, AV_CODEC_ID_AC3, AV_CODEC_ID_ALAC},
-     .has_boxes = true},
-    {.ending = ".mov",
-     .muxer = "mov",
-     .codec = "h264",
-     .sound = "aac",
-     .takes_sound = {AV_CODEC_ID_AAC, AV_CODEC_ID_MP3, AV_CODEC_ID_AC3, AV_CODEC_ID_ALAC,
-                     AV_CODEC_ID_PCM_S16LE, AV_CODEC_ID_PCM_S16BE, AV_CODEC_ID_PCM_S24LE,
-                     AV_CODEC_ID_PCM_S24BE, AV_CODEC_ID_PCM_S32LE, AV_CODEC_ID_PCM_F32LE},
-     .has_boxes = true},
-    {.ending = ".mkv",
-     .muxer = "matroska",
-     .settings = "settings",
-     .codec = "h264",
-     .sound = "aac",
-     .takes_sound = {AV_CODEC_ID_AAC, AV_CODEC_ID_MP3, AV_CODEC_ID_AC3, AV_CODEC_ID_ALAC,
-                     AV_CODEC_ID_FLAC, AV_CODEC_ID_OPUS, AV_CODEC_ID_VORBIS,
-                     AV_CODEC_ID_PCM_S16LE, AV_CODEC_ID_PCM_S24LE, AV_CODEC_ID_PCM_S32LE,
-                     AV_CODEC_ID_PCM_F32LE},
-     .ticks_a_second = 1000},
-    {.ending = ".webm",
-     .muxer = "webm",
-     .settings = "settings",
-     .codec = "vp9",
-     .sound = "libopus",
-     .takes_sound = {AV_CODEC_ID_OPUS, AV_CODEC_ID_VORBIS},
-     .ticks_a_second = 1000},
-    {.ending = ".gif", .muxer = "gif", .codec = "gif", .ticks_a_second = 100, .rate_max = 50},
-    {.ending = ".apng", .muxer = "apng", .codec = "apng", .has_delays = true},
-};
-enum { CONTAINER_COUNT = sizeof containers / sizeof *containers };
-
-static const char *const presets_x26x[] = {"ultrafast", "superfast", "veryfast", "faster",
-                                           "fast",      "medium",    "slow",     "slower",
-                                           "veryslow",  "placebo",   NULL};
-static const char *const presets_svt[] = {"13", "12", "11", "10", "9", "8", "7", "6",
-                                          "5",  "4",  "3",  "2",  "1", "0", NULL};
-static const char *const presets_vpx[] = {"8", "7", "6", "5", "4", "3", "2", "1", "0", NULL};
-
-/* Bits a pixel are those of ray-traced films, which are smoother than what cameras see. */
-static const zt_codec codecs[] = {
-    {.name = "h264",
-     .title = "H.264",
-     .encoder = "libx264",
-     .endings = {".mp4", ".mov", ".mkv"},
-     .pixels = {"yuv420p", "yuv420p10le", "yuv422p", "yuv422p10le", "yuv444p", "yuv444p10le"},
-     .crf = "18",
-     .crf_max = 51,
-     .has_bitrate = true,
-     /* Measured at 1280x720 with ray-traced spheres on a checkered floor: "veryfast" takes 13
-      * ms of one core a frame, "medium" 27 (and 70 where the picture is rough); the files are
-      * as large, and 48.9 dB against 50.3 is not seen. */
-     .presets = presets_x26x,
-     .preset_option = "preset",
-     .preset = "veryfast",
-     .settings = {{"x264-params", "force-cfr=1", NULL}},
-     /* x264's own AVX-512 reads memory that nobody wrote, where rows are no multiple of 128
-      * pixels: of the same film it makes other bits each time. */
-     .avx512_params = "asm=MMX2,SSE,SSE2,SSSE3,SSE4.2,AVX,FMA3,AVX2,BMI1,BMI2,LZCNT",
-     .thread_count = 4, /* takes a tenth more of the cores than one does */
-     .bits_a_pixel = 0.1},
-    {.name = "h265",
-     .title = "H.265",
-     .encoder = "libx265",
-     .endings = {".mp4", ".mov", ".mkv"},
-     .pixels = {"yuv420p", "yuv420p10le", "yuv422p", "yuv422p10le", "yuv444p", "yuv444p10le"},
-     .crf = "20",
-     .crf_max = 51,
-     .has_bitrate = true,
-     .presets = presets_x26x,
-     .preset_option = "preset",
-     .preset = "veryfast",
-     .settings = {{"x265-params", "log-level=none:open-gop=0:pools=4", NULL}},
-     .thread_count = 2, /* frames at a time; rows of each go to the pool */
-     .tag = MKTAG('h', 'v', 'c', '1'),
-     .bits_a_pixel = 0.06},
-    {.name = "av1",
-     .title = "AV1",
-     .encoder = "libsvtav1",
-     .endings = {".mp4", ".mkv", ".webm"},
-     .pixels = {"yuv420p", "yuv420p10le"},
-     .width_min = 64,
-     .height_min = 64,
-     .crf = "24",
-     .crf_max = 63,
-     .has_bitrate = true,
-     .presets = presets_svt,
-     .preset_option = "preset",
-     .preset = "10",
-     .settings = {{"svtav1-params", "lp=4", NULL}},
-     .bits_a_pixel = 0.05},
-    {.name = "vp9",
-     .title = "VP9",
-     .encoder = "libvpx-vp9",
-     .decoder = "libvpx-vp9",
-     .endings = {".mp4", ".mkv", ".webm"},
-     .pixels = {"yuv420p", "yuv420p10le", "yuv422p", "yuv422p10le", "yuv444p", "yuv444p10le",
-                "yuva420p"},
-     .opaque_in = ".mp4",
-     .crf = "20",
-     .crf_max = 63,
-     .has_bitrate = true,
-     .presets = presets_vpx,
-     .preset_option = "cpu-used",
-     .preset = "5",
-     .settings = {{"deadline", "good", NULL}, {"auto-alt-ref", "0", "yuva420p"}},
-     .thread_count = 4,
-     .bits_a_pixel = 0.08},
-    {.name = "prores",
-     .title = "ProRes 422 HQ",
-     .encoder = "prores_ks",
-     .endings = {".mov", ".mkv"},
-     .pixels = {"yuv422p10le"},
-     .settings = {{"profile", "hq", NULL}, {"vendor", "apl0", NULL}},
-     .thread_count = 4,
-     .bits_a_pixel = 3},
-    {.name = "prores4444",
-     .title = "ProRes 4444",
-     .encoder = "prores_ks",
-     .endings = {".mov", ".mkv"},
-     .pixels = {"yuv444p10le", "yuva444p10le"},
-     .settings = {{"profile", "4444", NULL},
-                  {"vendor", "apl0", NULL},
-                  {"alpha_bits", "16", "yuva444p10le"}},
-     .thread_count = 4,
-     .bits_a_pixel = 4.5},
-    {.name = "dnxhr",
-     .title = "DNxHR",
-     .encoder = "dnxhd",
-     .endings = {".mov", ".mkv"},
-     .pixels = {"yuv422p10le", "yuv422p", "yuv444p10le"},
-     .width_min = 256,
-     .height_min = 120,
-     .settings = {{"profile", "dnxhr_hqx", "yuv422p10le"},
-                  {"profile", "dnxhr_hq", "yuv422p"},
-                  {"profile", "dnxhr_444", "yuv444p10le"}},
-     .thread_count = 4,
-     .bits_a_pixel = 3},
-    {.name = "ffv1",
-     .title = "FFV1",
-     .encoder = "ffv1",
-     .endings = {".mkv"},
-     .pixels = {"gbrp10le", "gbrp16le", "bgr0", "bgra", "gbrap16le", "yuv420p", "yuv422p10le",
-                "yuv444p10le", "yuv444p16le"},
-     .settings = {{"level", "3", NULL},
-                  {"coder", "1", NULL},
-                  {"context", "1", NULL},
-                  {"slices", "4", NULL},
-                  {"slicecrc", "1", NULL},
-                  {"g", "1", NULL}},
-     .thread_count = 4,
-     .lossless = true,
-     .bits_a_pixel = 8},
-    {.name = "gif",
-     .title = "GIF",
-     .encoder = "gif",
-     .endings = {".gif"},
-     .pixels = {"pal8", "bgra"},
-     .stored = {"bgr0", "bgra"},
-     .thread_count = 1,
-     .palette = true,
-     .bits_a_pixel = 1.5},
-    {.name = "apng",
-     .title = "APNG",
-     .encoder = "apng",
-     .endings = {".apng"},
-     .pixels = {"rgb24", "rgba", "rgb48be", "rgba64be"},
-     .stored = {"bgr0", "bgra", "gbrp16le", "gbrap16le"},
-     .settings = {{"pred", "mixed", NULL}, {"compression_level", "6", NULL}},
-     .thread_count = 1,
-     .lossless = true,
-     .bits_a_pixel = 4},
-};
-enum { CODEC_COUNT = sizeof codecs / sizeof *codecs, LIST_MAX = 1024 };
+enum { LIST_MAX = 1024 };
 
 /* Names for a message, and the one that may have been meant. */
 typedef struct names {
@@ -235,12 +56,12 @@ static zt_status choose_codec(zt_video_choice *choice, const zt_video_ear *ear) 
     const char *wanted = zt_wish_value(choice->options, "codec");
     const char *name = wanted ? wanted : choice->container->codec;
     names known = {.nearest = zt_nearest_to(name)};
-    for (int i = 0; i < CODEC_COUNT; i++) {
-        bool fits = goes_into(&codecs[i], choice->container);
-        if (encoder_of(&codecs[i]) && fits) add_name(&known, codecs[i].name);
-        if (!zt_text_equal(codecs[i].name, name)) continue;
-        if (!fits) return refuse_container(&codecs[i], choice, ear);
-        choice->codec = &codecs[i];
+    for (int i = 0; zt_codecs[i].name; i++) {
+        bool fits = goes_into(&zt_codecs[i], choice->container);
+        if (encoder_of(&zt_codecs[i]) && fits) add_name(&known, zt_codecs[i].name);
+        if (!zt_text_equal(zt_codecs[i].name, name)) continue;
+        if (!fits) return refuse_container(&zt_codecs[i], choice, ear);
+        choice->codec = &zt_codecs[i];
     }
     if (!choice->codec)
         return refuse_name(ear, "codec", name, choice->container->ending, &known);
@@ -483,9 +304,9 @@ zt_status zt_video_configure(AVCodecContext *encoder, const zt_video_choice *cho
 zt_status zt_video_choose(zt_video_choice *choice, const zt_output_format *format,
                           const zt_output_option *options, const zt_video_ear *ear) {
     *choice = (zt_video_choice){.options = options};
-    for (int i = 0; i < CONTAINER_COUNT; i++)
-        if (zt_text_ends_with(ear->target, containers[i].ending, true))
-            choice->container = &containers[i];
+    for (int i = 0; zt_containers[i].ending; i++)
+        if (zt_text_ends_with(ear->target, zt_containers[i].ending, true))
+            choice->container = &zt_containers[i];
     if (!choice->container)
         return zt_video_refuse(ear, ZT_EUNSUPPORTED, "no movie has this ending");
     ZT_TRY(choose_codec(choice, ear));

@@ -59,6 +59,10 @@ typedef struct zt_codec {
     double bits_a_pixel;       /* of a usual film */
 } zt_codec;
 
+/* All that there are; the last ones have no ending, no name. */
+extern const zt_container zt_containers[];
+extern const zt_codec zt_codecs[];
+
 /* What was chosen, all of it known to exist and to fit together. The texts are the options'. */
 typedef struct zt_video_choice {
     const zt_container *container;
