@@ -13,7 +13,7 @@
 static void linear(void **state) {
     (void)state;
     zoetrope_succeeds("render film.yaml -o film.mp4");
-    zoetrope_succeeds("render film.yaml -o shots/film.####.exr");
+    zoetrope_succeeds("render film.yaml -o shots/film.####.exr --aovs Z,N");
     write_text("shots/film.5.exr", "too few digits");
     write_text("shots/film.00005.exr", "too many zeros");
     write_text("shots/film.0009.exr.part", "unfinished");

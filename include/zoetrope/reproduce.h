@@ -36,7 +36,8 @@ typedef struct zt_look {
     zt_view
         view; /* raw where the images are for a display already; srgb where they say nothing */
     zt_color_wish color;
-    const char *settings; /* those of the image, but for how its file is written; or NULL */
+    const char *settings; /* those of the image, but for what is of its file and channels; or
+                             NULL */
 } zt_look;
 
 /* `view` counts instead of the images' own where it is not NULL. ZT_EMEMORY. The caller frees

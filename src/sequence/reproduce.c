@@ -90,6 +90,7 @@ zt_status zt_look_find(zt_look **out, const zt_image *image, const zt_view *view
     }
     if (known) {
         settings.format = NULL;
+        settings.aovs = 0; /* a movie has none */
         settings.view = m->look.view;
         settings.color = m->look.color;
         status = zt_settings_print(&m->look.settings, &settings, &m->arena);

@@ -159,7 +159,7 @@ static zt_status print_of(const char **text, const zt_renderer *r, const zt_film
                                   .height = r->format.height,
                                   .sampling = *sampling,
                                   .precision = r->precision,
-                                  .aovs = r->aovs,
+                                  .aovs = format ? r->aovs : 0, /* movies have none */
                                   .view = r->format.view,
                                   .color = r->format.color,
                                   .format = format,
