@@ -62,6 +62,9 @@ zt_request zt_options_read(zt_options *options, int argc, char **argv, zt_report
  * the place of their number; not terminated. */
 const char *zt_options_name(int *length, const zt_options *options);
 
+/* Whether the places for names in the target that was given are such; tells where not. */
+bool zt_options_check_target(const zt_options *options, zt_report *report);
+
 /* Where the images go: as told, or output/ and the description's name with an ending by the
  * command. Of the caller to free; NULL when out of memory. */
 char *zt_options_target(const zt_options *options);
