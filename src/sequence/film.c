@@ -363,9 +363,10 @@ static zt_status make(making *m) {
     memcpy(m->frames.numbers, o->frames->numbers,
            (size_t)m->frames.count * sizeof *m->frames.numbers);
     if (!m->still || m->timed) zt_frames_sort(&m->frames);
+    /* Parts share a target only where each makes files of its own. */
+    int64_t part = m->still ? o->part : 0, part_count = m->still ? o->part_count : 0;
     if (m->remembers)
-        ZT_TRY(
-            zt_hold_open(&m->hold, o->target, o->part, o->part_count, m->renderer->listener));
+        ZT_TRY(zt_hold_open(&m->hold, o->target, part, part_count, m->renderer->listener));
     if (m->remembers || m->timed) ZT_TRY(open_notes(m));
     ZT_TRY(take_part(m));
     if (m->frames.count == 0) return ZT_OK;
