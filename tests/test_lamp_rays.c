@@ -234,6 +234,11 @@ static void test_counts(void **state) {
     trace_paths(&light, &s.scene, toward, 5);
     assert_int_equal(light.counts.primary, 5);
     assert_int_equal(light.counts.shadow, 0); /* nothing is in between */
+    assert_int_equal(light.counts.mirror, 0); /* and there is nothing to be mirrored */
+    scene_sphere(&s, (vec3){0, 500, 1000}, 1, 0); /* somewhere: now there is */
+    light.counts = (zt_ray_counts){0};
+    trace_paths(&light, &s.scene, toward, 5);
+    assert_int_equal(light.counts.primary, 5);
     assert_int_equal(light.counts.mirror, 2);
     scene_sphere(&s, (vec3){50, 1, -2}, 60, 0); /* around all */
     trace_paths(&light, &s.scene, toward, 5);
