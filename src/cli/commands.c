@@ -6,9 +6,10 @@
 
 #define BIT(option) (UINT64_C(1) << ZT_OPTION_##option)
 #define ANYWHERE    (BIT(SET) | BIT(QUIET) | BIT(HELP) | BIT(VERSION))
-#define MOVIE                                                                                  \
+#define OF_OUTPUT                                                                              \
     (BIT(CODEC) | BIT(CRF) | BIT(BITRATE) | BIT(PRESET) | BIT(PIXEL_FORMAT) |                  \
-     BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO) | BIT(VIEW))
+     BIT(ENCODER_OPTION) | BIT(FORMAT_OPTION) | BIT(COMMENT) | BIT(AUDIO))
+#define MOVIE (OF_OUTPUT | BIT(VIEW))
 #define ONE_FRAME                                                                              \
     (ANYWHERE | MOVIE | BIT(OUTPUT) | BIT(OVERWRITE) | BIT(SIZE) | BIT(SAMPLES) |              \
      BIT(THREADS) | BIT(PRECISION) | BIT(STATS))
@@ -118,30 +119,28 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                         "or srgb, rec709, raw: how linear light is shown where it is for a "
                         "display"},
     [ZT_OPTION_CODEC] = {"codec", 0, "h265",
-                         "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1", true},
-    [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale",
-                       true},
-    [ZT_OPTION_BITRATE] = {"bitrate", 0, "8M", "bits a second of a movie, instead of --crf",
-                           true},
+                         "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1"},
+    [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale"},
+    [ZT_OPTION_BITRATE] = {"bitrate", 0, "8M", "bits a second of a movie, instead of --crf"},
     [ZT_OPTION_PRESET] = {"preset", 0, "medium",
-                          "how long a movie's encoder takes, by its own names or numbers",
-                          true},
+                          "how long a movie's encoder takes, by its own names or numbers"},
     [ZT_OPTION_PIXEL_FORMAT] =
         {"pixel-format", 0, "yuv420p10",
-         "of a movie, by FFmpeg's names; with an a, such as yuva444p10, it has alpha", true},
+         "of a movie, by FFmpeg's names; with an a, such as yuva444p10, it has alpha"},
     [ZT_OPTION_ENCODER_OPTION] = {"encoder-option", 0, "K=V",
-                                  "for the movie's encoder itself; any number of times", true},
+                                  "for the movie's encoder itself; any number of times"},
     [ZT_OPTION_FORMAT_OPTION] = {"format-option", 0, "K=V",
-                                 "of image files: bits=16, compression=dwaa:45, tile=64", true},
-    [ZT_OPTION_COMMENT] = {"comment", 0, "TEXT", "in the movie's metadata", true},
-    [ZT_OPTION_AUDIO] = {"audio", 0, "track.wav", "the movie's sound, instead of the film's",
-                         true},
+                                 "of image files: bits=16, compression=dwaa:45, tile=64"},
+    [ZT_OPTION_COMMENT] = {"comment", 0, "TEXT", "in the movie's metadata"},
+    [ZT_OPTION_AUDIO] = {"audio", 0, "track.wav", "the movie's sound, instead of the film's"},
     [ZT_OPTION_SET] = {"set", 0, "NAME=40",
                        "in place of what FILE says: lamp.intensity=40; any number of times"},
     [ZT_OPTION_QUIET] = {"quiet", 'q', NULL, "print nothing but errors"},
     [ZT_OPTION_HELP] = {"help", 'h', NULL, "print this"},
     [ZT_OPTION_VERSION] = {"version", 0, NULL, "print the version"},
 };
+
+bool zt_option_is_of_output(zt_option option) { return OF_OUTPUT >> option & 1; }
 
 zt_command zt_command_find(const char *name) {
     int i = 0;

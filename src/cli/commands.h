@@ -81,10 +81,12 @@ typedef struct zt_option_row {
     char letter;         /* '\0': none */
     const char *example; /* of its value; NULL: takes none */
     const char *help;
-    bool is_of_output; /* passed on to it, by the same name */
 } zt_option_row;
 
 extern const zt_option_row zt_options_known[ZT_OPTION_COUNT];
+
+/* Whether an option is passed on to the output, by the same name. */
+bool zt_option_is_of_output(zt_option option);
 
 /* The command of that name, or none. */
 zt_command zt_command_find(const char *name);

@@ -118,7 +118,8 @@ static int take_option(arguments *sorted, int i, char **argv, zt_report *report)
     sorted->values[option] = row->example ? value : "";
     bool good = true;
     if (option == ZT_OPTION_SET) good = value && take_set(sorted->options, value, report);
-    if (row->is_of_output) good = pass_on(sorted->options, row->name, value, report);
+    if (zt_option_is_of_output((zt_option)option))
+        good = pass_on(sorted->options, row->name, value, report);
     return good ? i : 0;
 }
 
