@@ -6,7 +6,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <sys/file.h>
 #include <sys/wait.h>
 
 #include <cmocka.h>
@@ -202,23 +201,6 @@ static void budgets_go_on(void **state) {
 /* ---- others ---------------------------------------------------------------------------------
  */
 
-/* The second process on a movie is told who is at work, and changes nothing. */
-static void movies_are_held(void **state) {
-    (void)state;
-    zt_film_result result;
-    heard h;
-    print_to("l.mp4.lock", "process 17 on attic\n");
-    int lock = open("l.mp4.lock", O_RDWR);
-    assert_true(lock >= 0 && flock(lock, LOCK_EX) == 0);
-    int entries = entry_count(".");
-    assert_int_equal(render(&result, &h, "l.mp4", &(change){0}, (zt_film_order){0}, INT64_MAX),
-                     ZT_EFILE);
-    assert_told(&h, "l.mp4 is being rendered by process 17 on attic");
-    assert_int_equal(entry_count("."), entries);
-    close(lock);
-    expect("l.mp4", &(change){0}, 5, 7, 0);
-}
-
 /* What is refused before the first frame leaves nothing behind. */
 static void what_is_refused_leaves_nothing(void **state) {
     (void)state;
@@ -243,7 +225,6 @@ int main(void) {
                                        cmocka_unit_test(finished_frames_are_verified),
                                        cmocka_unit_test(parts_stay),
                                        cmocka_unit_test(budgets_go_on),
-                                       cmocka_unit_test(movies_are_held),
                                        cmocka_unit_test(what_is_refused_leaves_nothing)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

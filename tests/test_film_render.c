@@ -147,22 +147,43 @@ static void strangers_stay(void **state) {
     assert_false(same(before, hash_of("t.05.png")));
 }
 
-/* A second one is told who is at work, and changes nothing. */
+/* A second one on the same target is told who is at work, and changes nothing; nor does one
+ * that would do a part of it. */
 static void one_at_a_time(void **state) {
+    (void)state;
+    static const char *const targets[] = {"l.##.png", "l.mp4"};
+    for (int i = 0; i < 2; i++) {
+        zt_film_result result;
+        heard h;
+        char lock_path[16], told[64];
+        snprintf(lock_path, sizeof lock_path, "%s.lock", targets[i]);
+        snprintf(told, sizeof told, "%s is being rendered by process 17 on attic", targets[i]);
+        print_to(lock_path, "process 17 on attic\n");
+        int lock = open(lock_path, O_RDWR), entries = entry_count(".");
+        assert_true(lock >= 0 && flock(lock, LOCK_EX) == 0);
+        for (int parts = 0; parts < 2; parts++) {
+            zt_film_order order = {.part = parts, .part_count = 2 * parts};
+            assert_int_equal(render(&result, &h, targets[i], &(change){0}, order, INT64_MAX),
+                             ZT_EFILE);
+            assert_told(&h, told);
+            assert_int_equal(entry_count("."), entries);
+        }
+        close(lock); /* it died: what is left of its lock holds nobody up */
+        expect(targets[i], &(change){0}, 5, 7, 0);
+    }
+}
+
+/* A movie is one file, and so are its parts. */
+static void parts_of_movies_share_nothing(void **state) {
     (void)state;
     zt_film_result result;
     heard h;
-    print_to("l.##.png.lock", "process 17 on attic\n");
-    int lock = open("l.##.png.lock", O_RDWR);
-    assert_true(lock >= 0 && flock(lock, LOCK_EX) == 0);
-    assert_int_equal(
-        render(&result, &h, "l.##.png", &(change){0}, (zt_film_order){0}, INT64_MAX), ZT_EFILE);
-    assert_told(&h, "l.##.png is being rendered by process 17 on attic");
-    assert_true(access("l.00.png", F_OK) != 0 && access("l.##.png.lock", F_OK) == 0);
+    print_to("m.mp4.lock", "process 17 on attic\n");
+    int lock = open("m.mp4.lock", O_RDWR);
+    assert_true(lock >= 0 && flock(lock, LOCK_SH) == 0);
     zt_film_order part = {.part = 1, .part_count = 2};
-    assert_int_equal(render(&result, &h, "l.##.png", &(change){0}, part, INT64_MAX), ZT_EFILE);
-    close(lock); /* it died: what is left of its lock holds nobody up */
-    expect("l.##.png", &(change){0}, 5, 7, 0);
+    assert_int_equal(render(&result, &h, "m.mp4", &(change){0}, part, INT64_MAX), ZT_EFILE);
+    close(lock);
 }
 
 /* Several share a target, each a part of its own; nobody takes all of it meanwhile. What all of
@@ -207,6 +228,7 @@ int main(void) {
                                        cmocka_unit_test(stopped_films_go_on),
                                        cmocka_unit_test(strangers_stay),
                                        cmocka_unit_test(one_at_a_time),
+                                       cmocka_unit_test(parts_of_movies_share_nothing),
                                        cmocka_unit_test(parts_share)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }
