@@ -25,6 +25,23 @@ static void checksums(void **state) {
     assert_true(other.high != nothing.high && other.low != nothing.low);
 }
 
+/* Digits as they are printed are read, all 64 bits of each half, and nothing else is. */
+static void checksums_are_read(void **state) {
+    static const char *const refused[] = {"",
+                                          "0123456789abcdeffedcba987654321",
+                                          "0123456789abcdeffedcba98765432100",
+                                          "0123456789abcdeffedcba987654321F",
+                                          " 123456789abcdeffedcba9876543210",
+                                          "0123456789abcdef-edcba9876543210",
+                                          "0x23456789abcdeffedcba9876543210"};
+    (void)state;
+    zt_hash hash;
+    assert_true(zt_hash_read(&hash, "ffffffffffffffff0123456789abcdef"));
+    assert_true(hash.high == UINT64_MAX && hash.low == UINT64_C(0x0123456789abcdef));
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+        assert_false(zt_hash_read(&hash, refused[i]));
+}
+
 /* Pieces are zero, aligned and apart from each other, in the first round and in the next. */
 static void arena_pieces(void **state) {
     (void)state;
@@ -288,6 +305,7 @@ static void every_status_has_words(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(checksums),
+        cmocka_unit_test(checksums_are_read),
         cmocka_unit_test(arena_pieces),
         cmocka_unit_test(arena_large_and_absurd),
         cmocka_unit_test(text_distances),

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/text.h"
 
 enum { FRAME, RATE, KEY, SEED, TITLE, DESCRIPTION, VIEW, SETTINGS, BACKGROUND };
@@ -50,22 +51,22 @@ static bool is_all(char *printed, const char *text) {
     return same;
 }
 
-static bool read_key(zt_hash *key, const char *text) {
-    return strlen(text) == 32 && strspn(text, "0123456789abcdef") == 32 &&
-           sscanf(text, "%16" SCNx64 "%16" SCNx64, &key->high, &key->low) == 2;
+static bool read_rate(zt_rate *rate, const char *text) {
+    char *end;
+    rate->num = (int32_t)strtol(text, &end, 10);
+    rate->den = *end == '/' ? (int32_t)strtol(end + 1, NULL, 10) : 0;
+    return rate->num > 0 && rate->den > 0 &&
+           is_all(zt_text_print("%d/%d", rate->num, rate->den), text);
 }
 
 static bool read_numbers(zt_image_info *info, const char *const texts[ZT_INFO_COUNT]) {
     for (int i = FRAME; i < TITLE; i++)
         if (!texts[i]) return false;
-    zt_rate *rate = &info->rate;
     info->frame = strtoll(texts[FRAME], NULL, 10);
     info->seed = strtoull(texts[SEED], NULL, 10);
     return is_all(zt_text_print("%" PRId64, info->frame), texts[FRAME]) &&
            is_all(zt_text_print("%" PRIu64, info->seed), texts[SEED]) &&
-           sscanf(texts[RATE], "%9d/%9d", &rate->num, &rate->den) == 2 &&
-           is_all(zt_text_print("%d/%d", rate->num, rate->den), texts[RATE]) && rate->num > 0 &&
-           rate->den > 0 && read_key(&info->key, texts[KEY]);
+           read_rate(&info->rate, texts[RATE]) && zt_hash_read(&info->key, texts[KEY]);
 }
 
 zt_status zt_info_read(zt_image *image, const char *const texts[ZT_INFO_COUNT]) {

@@ -1,9 +1,9 @@
 /* The lines of a manifest: JSON, one object each. */
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/diag.h"
+#include "base/hash.h"
 #include "sequence/manifest.h"
 
 enum { VERSION = 1, SAMPLES_MAX = 65536, FILE_NAME_MAX = 256, SPLIT_MAX = 10000 };
@@ -149,13 +149,10 @@ static const char *const keys[KEYS + 1] = {
 #define SPLIT    (BIT(SPLIT) | BIT(ENDS))
 
 static zt_status read_hash(zt_hash *hash, zt_json *json) {
-    char text[40], high[17];
+    char text[40];
     ZT_TRY(zt_json_text(json, text, sizeof text));
-    if (strlen(text) != 32 || strspn(text, "0123456789abcdef") != 32)
-        return zt_json_refuse(json, "here must be 32 hexadecimal digits in quotes");
-    snprintf(high, sizeof high, "%.16s", text);
-    *hash = (zt_hash){strtoull(high, NULL, 16), strtoull(text + 16, NULL, 16)};
-    return ZT_OK;
+    if (zt_hash_read(hash, text)) return ZT_OK;
+    return zt_json_refuse(json, "here must be 32 hexadecimal digits in quotes");
 }
 
 static zt_status read_precision(zt_manifest_line *l, zt_json *json) {
