@@ -1,6 +1,7 @@
 #include "encode/names.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,7 +69,7 @@ static zt_status read_pattern(zt_names *names, const char *target, zt_listener l
 static void add_layer(zt_names *names, const char *layer) {
     for (int i = 0; i < names->count; i++)
         if (strcmp(names->layers[i], layer) == 0) return;
-    strcpy(names->layers[names->count++], layer);
+    snprintf(names->layers[names->count++], ZT_LAYER_NAME_MAX, "%s", layer);
 }
 
 static zt_status find_layers(zt_names *names, unsigned aovs) {

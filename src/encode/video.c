@@ -146,13 +146,15 @@ static zt_status open_all(movie *m, const char *target, const zt_output_option *
     m->format.settings = settings ? strdup(settings) : NULL;
     if (!m->ear.target || (settings && !m->format.settings)) return ZT_EMEMORY;
     ZT_TRY(copy_options(m, options));
-    ZT_TRY(zt_video_choose(&m->choice, &m->format, m->options, &m->ear));
+    zt_video_choice choice;
+    ZT_TRY(zt_video_choose(&choice, &m->format, m->options, &m->ear));
+    m->choice = choice;
     ZT_TRY(choose_grown(m));
-    const zt_container *kind = m->choice.container;
+    const zt_container *kind = choice.container;
     if (zt_wish_value(options, "audio") && !kind->sound)
         zt_tell(m->ear.listener, ZT_WARNING, "%s has no sound: %s files hold none", target,
                 kind->ending);
-    if (m->choice.codec->palette && !zt_module_door("video_palette", "a GIF", m->ear.listener))
+    if (choice.codec->palette && !zt_module_door("video_palette", "a GIF", m->ear.listener))
         return ZT_EUNSUPPORTED;
     ZT_TRY(zt_aside_open_as(&m->aside, target, ".joined", m->ear.listener));
     ZT_TRY(check_room(m));

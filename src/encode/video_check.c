@@ -134,11 +134,13 @@ static bool near_rate(const check *c, AVRational found) {
 }
 
 /* A tag that says nothing is no mistake: some kinds of file cannot hold it. */
-static bool tag_differs(int found, int wanted, int unspecified) {
+static bool tag_differs(unsigned found, unsigned wanted, unsigned unspecified) {
     return found != wanted && found != unspecified;
 }
 
-static zt_status check_tags(const check *c, int primaries, int transfer, int matrix, int range,
+static zt_status check_tags(const check *c, enum AVColorPrimaries primaries,
+                            enum AVColorTransferCharacteristic transfer,
+                            enum AVColorSpace matrix, enum AVColorRange range,
                             const char *where) {
     const AVFrame *sent = c->expected->like;
     if (tag_differs(primaries, sent->color_primaries, AVCOL_PRI_UNSPECIFIED) ||
@@ -167,14 +169,14 @@ static zt_status check_stream(const check *c) {
     if (c->expected->frame_count > 1 && !near_rate(c, stream->avg_frame_rate))
         return FAIL(c, "%d/%d frames a second", stream->avg_frame_rate.num,
                     stream->avg_frame_rate.den);
-    return check_tags(c, (int)p->color_primaries, (int)p->color_trc, (int)p->color_space,
-                      (int)p->color_range, "container");
+    return check_tags(c, p->color_primaries, p->color_trc, p->color_space, p->color_range,
+                      "container");
 }
 
 static zt_status compare(check *c, const zt_video_sample *sample, double *least) {
     const AVFrame *found = c->reader.frame;
-    ZT_TRY(check_tags(c, (int)found->color_primaries, (int)found->color_trc,
-                      (int)found->colorspace, (int)found->color_range, "stream"));
+    ZT_TRY(check_tags(c, found->color_primaries, found->color_trc, found->colorspace,
+                      found->color_range, "stream"));
     double psnr = zt_video_psnr(found, sample->frame);
     if (psnr < 0)
         return FAIL(c, "frame %" PRId64 " as %dx%d %s instead of %dx%d %s", sample->number,

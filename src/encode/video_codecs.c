@@ -60,11 +60,13 @@ static zt_status choose_codec(zt_video_choice *choice, const zt_video_ear *ear) 
         bool fits = goes_into(&zt_codecs[i], choice->container);
         if (encoder_of(&zt_codecs[i]) && fits) add_name(&known, zt_codecs[i].name);
         if (!zt_text_equal(zt_codecs[i].name, name)) continue;
-        if (!fits) return refuse_container(&zt_codecs[i], choice, ear);
         choice->codec = &zt_codecs[i];
+        if (!fits) return refuse_container(&zt_codecs[i], choice, ear);
     }
-    if (!choice->codec)
-        return refuse_name(ear, "codec", name, choice->container->ending, &known);
+    if (!choice->codec) {
+        refuse_name(ear, "codec", name, choice->container->ending, &known);
+        return ZT_EARGUMENT;
+    }
     choice->encoder = encoder_of(choice->codec);
     if (choice->encoder) return ZT_OK;
     return zt_video_refuse(ear, ZT_EUNSUPPORTED,

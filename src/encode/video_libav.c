@@ -49,8 +49,7 @@ zt_status zt_video_refuse(const zt_video_ear *ear, zt_status status, const char 
     return status;
 }
 
-zt_status zt_libav_refuse(const zt_video_ear *ear, int error) {
-    if (error == AVERROR(ENOMEM)) return ZT_EMEMORY;
-    return zt_video_refuse(ear, ZT_EFILE, "%s%s%s", av_err2str(error), *complaint ? ": " : "",
-                           complaint);
+void zt_libav_tell(const zt_video_ear *ear, int error) {
+    zt_video_refuse(ear, ZT_EFILE, "%s%s%s", av_err2str(error), *complaint ? ": " : "",
+                    complaint);
 }

@@ -22,7 +22,14 @@ __attribute__((format(printf, 3, 4))) zt_status
 zt_video_refuse(const zt_video_ear *ear, zt_status status, const char *format, ...);
 
 /* Tells a failure of libav, by its number and what it complained of. */
-zt_status zt_libav_refuse(const zt_video_ear *ear, int error);
+void zt_libav_tell(const zt_video_ear *ear, int error);
+
+/* Tells it, unless it is a lack of memory, and returns the status that it comes to. */
+static inline zt_status zt_libav_refuse(const zt_video_ear *ear, int error) {
+    if (error == AVERROR(ENOMEM)) return ZT_EMEMORY;
+    zt_libav_tell(ear, error);
+    return ZT_EFILE;
+}
 
 /* What libav last complained of in this thread; "" for nothing. */
 const char *zt_libav_complaint(void);
