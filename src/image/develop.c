@@ -154,7 +154,8 @@ static void develop_piece(float *shown, const float *pixels, int width, const ta
     find_places(all, pixels, 4 * width, table->white_bits);
     for (int x = 0; x < width; x++)
         for (int c = 0; c < 3; c++) {
-            int32_t place = places[3 * x + c] = all[4 * x + c];
+            /* There are 4 times `width`, which the analyzer does not multiply. */
+            int32_t place = places[3 * x + c] = all[4 * x + c]; /* NOLINT(*uninitialized*) */
             chords[3 * x + c] = table->chords[place >> LOW_BITS];
         }
     on_chords(shown, places, chords, 3 * width);

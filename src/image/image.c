@@ -65,8 +65,10 @@ float *zt_image_channel(const zt_image *image, const char *name) {
 zt_status zt_image_add_channel(zt_image *image, const char *name) {
     if (zt_image_channel(image, name)) return ZT_OK;
     if (image->channel_count == ZT_IMAGE_CHANNELS_MAX) return ZT_EARGUMENT;
-    float *values = calloc((size_t)image->width * (size_t)image->height, sizeof *values);
-    if (!values) return ZT_EMEMORY;
-    image->channels[image->channel_count++] = (zt_channel){name, values};
+    zt_channel *added = &image->channels[image->channel_count];
+    added->name = name;
+    added->values = calloc((size_t)image->width * (size_t)image->height, sizeof(float));
+    if (!added->values) return ZT_EMEMORY;
+    image->channel_count++;
     return ZT_OK;
 }
