@@ -149,10 +149,11 @@ static void print_sentence(void *user, const char *sentence) {
 
 /* Runs of frames that show the same: of each the first alone is rendered. */
 static zt_status print_held(zt_renderer *renderer, int64_t first, int64_t last) {
-    zt_hash held, key;
+    zt_hash held;
     zt_status status = zt_renderer_key(&held, renderer, first);
     int64_t since = first;
     for (int64_t frame = first + 1; frame <= last + 1 && status == ZT_OK; frame++) {
+        zt_hash key = {0};
         if (frame <= last) status = zt_renderer_key(&key, renderer, frame);
         if (status != ZT_OK) break;
         if (frame <= last && key.low == held.low && key.high == held.high) continue;
