@@ -56,7 +56,8 @@ static spent render_film(void *user) {
     must(zt_renderer_open(&renderer, animation, &(zt_render_settings){0}, to_stderr), target);
     zt_frames all;
     must(zt_frames_read(&all, "0--1", count, to_stderr), target);
-    zt_film_order order = {.target = target, .options = options, .frames = &all};
+    zt_film_order order = {
+        .target = target, .options = options, .frames = &all, .overwrites = true};
     must(zt_film_render(&result, renderer, &order, NULL), target);
     zt_frames_free(&all);
     zt_renderer_close(&renderer);
