@@ -393,7 +393,8 @@ static void assert_exr_text(const char *bytes, size_t size, const char *name,
                             const char *expected) {
     int32_t length;
     const char *text = exr_attribute(bytes, size, name, "string", &length);
-    if (!text || (size_t)length != strlen(expected) || memcmp(text, expected, strlen(expected)))
+    if (!text || (size_t)length != strlen(expected) ||
+        memcmp(text, expected, strlen(expected)) != 0)
         fail_msg("%s is %.*s", name, text ? length : 4, text ? text : "none");
 }
 

@@ -233,8 +233,8 @@ static void test_counts(void **state) {
     light.counts = (zt_ray_counts){0};
     trace_paths(&light, &s.scene, toward, 5);
     assert_int_equal(light.counts.primary, 5);
-    assert_int_equal(light.counts.shadow, 0); /* nothing is in between */
-    assert_int_equal(light.counts.mirror, 0); /* and there is nothing to be mirrored */
+    assert_int_equal(light.counts.shadow, 0);     /* nothing is in between */
+    assert_int_equal(light.counts.mirror, 0);     /* and there is nothing to be mirrored */
     scene_sphere(&s, (vec3){0, 500, 1000}, 1, 0); /* somewhere: now there is */
     light.counts = (zt_ray_counts){0};
     trace_paths(&light, &s.scene, toward, 5);
