@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -219,6 +220,38 @@ static void extremes(void **state) {
     zt_arena_free(&arena);
 }
 
+/* Only numbers that say where a thing is move it: not how light falls on it, nor what memory
+ * holds between its fields and behind those of its shape. */
+static void alike(void **state) {
+    (void)state;
+    const zt_shape shapes[] = {ZT_SHAPE_SPHERE, ZT_SHAPE_MESH};
+    const vec3 none = {0, 0, 0}, point = {1.0 / 3, 1.0 / 7, -1e-9};
+    for (int i = 0; i < 2; i++) {
+        const zt_object thing = make(shapes[i], 0).object;
+        zt_object objects[2];
+        zt_scene scenes[2];
+        for (int when = 0; when < 2; when++) {
+            zt_object *o = &objects[when];
+            memset(o, when ? 0xff : 0, sizeof *o);
+            o->shape = thing.shape;
+            o->parent = o->material = o->mesh = -1;
+            o->smooth = o->vertex_colors = when;
+            if (thing.shape == ZT_SHAPE_SPHERE)
+                o->sphere = thing.sphere;
+            else
+                o->placement = thing.placement;
+            scenes[when] = (zt_scene){.objects = o, .object_count = 1};
+        }
+        zt_arena arena = {0};
+        zt_passage passage;
+        assert_int_equal(zt_passage_prepare(&passage, &scenes[0], &scenes[1], none, &arena),
+                         ZT_OK);
+        vec3 same = zt_passage_carry(&passage, 0, point);
+        assert_memory_equal(&same, &point, sizeof same);
+        zt_arena_free(&arena);
+    }
+}
+
 /* ---- cameras --------------------------------------------------------------------------------
  */
 
@@ -320,6 +353,7 @@ static void behind(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(carried), cmocka_unit_test(extremes),
-                                       cmocka_unit_test(seen), cmocka_unit_test(behind)};
+                                       cmocka_unit_test(alike), cmocka_unit_test(seen),
+                                       cmocka_unit_test(behind)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

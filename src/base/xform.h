@@ -2,6 +2,7 @@
 #ifndef ZT_BASE_XFORM_H
 #define ZT_BASE_XFORM_H
 
+#include "base/bits.h"
 #include "base/quat.h"
 #include "base/vec.h"
 
@@ -12,6 +13,11 @@ typedef struct xform {
 
 static inline xform xform_identity(void) {
     return (xform){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+}
+
+/* To the last bit. */
+static inline bool xform_equal(const xform *a, const xform *b) {
+    return zt_bits_equal(a, b, sizeof *a);
 }
 
 static inline vec3 xform_vector(const xform *m, vec3 v) {

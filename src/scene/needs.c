@@ -1,7 +1,5 @@
 #include "scene/needs.h"
 
-#include <string.h>
-
 #include "base/diag.h"
 
 /* What lies on another side of a plane does so by this share of the largest number around. */
@@ -111,8 +109,6 @@ static bool plane_of(vec3 *n, double *distance, const zt_object *o, const xform 
     return vec3_max_abs(own) > 0 && vec3_max_abs(*n) > 0;
 }
 
-static bool same(const void *a, const void *b, size_t size) { return memcmp(a, b, size) == 0; }
-
 /* Whether a plane stands still between a light and an object at all moments. */
 static bool is_between(const zt_exposure *e, const xform *worlds, int32_t plane, int32_t light,
                        int32_t object) {
@@ -124,8 +120,8 @@ static bool is_between(const zt_exposure *e, const xform *worlds, int32_t plane,
         vec3 n;
         double distance;
         if (!plane_of(&n, &distance, o, &world[plane])) return false;
-        if (m > 0 && (!same(&o->plane, &e->moments->objects[plane].plane, sizeof o->plane) ||
-                      !same(&world[plane], &worlds[plane], sizeof *worlds)))
+        if (m > 0 && (!zt_object_stays(o, &e->moments->objects[plane]) ||
+                      !xform_equal(&world[plane], &worlds[plane])))
             return false;
         int lit = side_of(light_range(&scene->lights[light], n), distance, fabs(distance));
         int own =
@@ -177,7 +173,7 @@ static bool mirrors(const zt_exposure *e, int32_t object) {
 static bool object_moves(const zt_exposure *e, int32_t object) {
     for (int32_t m = 1; m < e->moment_count; m++)
         for (int32_t i = object; i >= 0; i = e->moments->objects[i].parent)
-            if (!same(&e->moments[m].objects[i], &e->moments->objects[i], sizeof(zt_object)))
+            if (!zt_object_equal(&e->moments[m].objects[i], &e->moments->objects[i]))
                 return true;
     return false;
 }
@@ -292,7 +288,7 @@ zt_status zt_needs_find(zt_needs *needs, const zt_exposure *exposure, bool every
     find_objects(needs, exposure);
     for (int32_t m = 0; m < exposure->moment_count; m++) {
         const zt_camera *camera = &exposure->moments[m].camera;
-        needs->camera_moves |= !same(camera, &scene->camera, sizeof *camera);
+        needs->camera_moves |= !zt_camera_equal(camera, &scene->camera);
         needs->has_opening |= zt_camera_opening(camera) > 0;
     }
     if (everything) return ZT_OK;

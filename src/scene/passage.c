@@ -1,7 +1,5 @@
 #include "scene/passage.h"
 
-#include <string.h>
-
 zt_status zt_passage_prepare(zt_passage *passage, const zt_scene *now, const zt_scene *next,
                              vec3 origin, zt_arena *arena) {
     int32_t count = now->object_count;
@@ -12,9 +10,8 @@ zt_status zt_passage_prepare(zt_passage *passage, const zt_scene *now, const zt_
     zt_scene_worlds(back, now, origin);
     zt_scene_worlds(forth, next, origin);
     for (int32_t i = 0; i < count; i++) {
-        /* The scenes of a film are copies of one, so that bytes of equal things are equal. */
-        stays[i] = memcmp(&now->objects[i], &next->objects[i], sizeof *now->objects) == 0 &&
-                   memcmp(&back[i], &forth[i], sizeof *back) == 0;
+        stays[i] = zt_object_stays(&now->objects[i], &next->objects[i]) &&
+                   xform_equal(&back[i], &forth[i]);
         back[i] = xform_inverse(&back[i]);
     }
     *passage = (zt_passage){now, next, origin, back, forth, stays};

@@ -177,6 +177,16 @@ typedef struct zt_scene {
     int32_t reflection_depth; /* how many mirrors a ray may meet, one after the other */
 } zt_scene;
 
+/* Whether two are equal to the last bit in each of their fields. */
+bool zt_camera_equal(const zt_camera *a, const zt_camera *b);
+bool zt_material_equal(const zt_material *a, const zt_material *b);
+bool zt_light_equal(const zt_light *a, const zt_light *b);
+bool zt_object_equal(const zt_object *a, const zt_object *b);
+
+/* Whether two objects of one shape have the same numbers, to the last bit, that say where they
+ * are. */
+bool zt_object_stays(const zt_object *a, const zt_object *b);
+
 /* The transform of each object's group, all groups above included, written to `worlds`
  * (object_count of them): from the space that the object's numbers are given in to the world
  * as seen from `origin`. That is taken off before anything is added up, so that what is near it
