@@ -41,12 +41,12 @@ static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now
 }
 
 /* One of the two may be NULL, where a thing comes or goes. */
-static void add_thing(zt_differences *d, const zt_outline_thing *before,
+static void add_thing(zt_differences *d, int32_t object, const zt_outline_thing *before,
                       const zt_outline_thing *now, bool same_numbers) {
     bool drawn = !same_numbers && ((before && before->moves) || (now && now->moves));
     bool moved = !before || !now || !same(before->shape, now->shape) || drawn;
     if (!moved && same(before->looks, now->looks)) return;
-    d->objects |= zt_footprint_bit(now ? now->object : before->object);
+    d->objects |= zt_footprint_bit(object);
     if (!moved) return;
     if (before) add_place(d, before, false);
     if (now) add_place(d, now, true);
@@ -59,12 +59,11 @@ static void add_things(zt_differences *d, const zt_outline *before, const zt_out
                        bool same_numbers) {
     int32_t i = 0, k = 0;
     while (i < before->thing_count || k < now->thing_count) {
-        const zt_outline_thing *a = i < before->thing_count ? &before->things[i] : NULL;
-        const zt_outline_thing *b = k < now->thing_count ? &now->things[k] : NULL;
-        if (a && b && a->object != b->object) *(a->object < b->object ? &b : &a) = NULL;
-        add_thing(d, a, b, same_numbers);
-        i += a != NULL;
-        k += b != NULL;
+        int32_t was = i < before->thing_count ? before->things[i].object : INT32_MAX;
+        int32_t is = k < now->thing_count ? now->things[k].object : INT32_MAX;
+        const zt_outline_thing *a = was <= is ? &before->things[i++] : NULL;
+        const zt_outline_thing *b = is <= was ? &now->things[k++] : NULL;
+        add_thing(d, was < is ? was : is, a, b, same_numbers);
     }
 }
 

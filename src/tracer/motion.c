@@ -4,28 +4,16 @@
 
 #include <string.h>
 
+#include "base/bits.h"
 #include "base/diag.h"
 
 /* ---- what moves -----------------------------------------------------------------------------
  */
 
-/* The doubles that say where an object is. */
-static size_t numbers_size(zt_shape shape) {
-    static const size_t sizes[ZT_SHAPE_COUNT] = {
-        [ZT_SHAPE_PLANE] = sizeof(zt_plane),       [ZT_SHAPE_SPHERE] = sizeof(zt_sphere),
-        [ZT_SHAPE_TRIANGLE] = sizeof(zt_triangle), [ZT_SHAPE_DISK] = sizeof(zt_disk),
-        [ZT_SHAPE_BOX] = sizeof(zt_block),         [ZT_SHAPE_CYLINDER] = sizeof(zt_tube),
-        [ZT_SHAPE_CONE] = sizeof(zt_tube),         [ZT_SHAPE_TORUS] = sizeof(zt_torus),
-        [ZT_SHAPE_CAPSULE] = sizeof(zt_tube),      [ZT_SHAPE_MESH] = sizeof(zt_placement),
-        [ZT_SHAPE_GROUP] = sizeof(zt_placement)};
-    return sizes[shape];
-}
-
 static bool object_moves(const zt_exposure *e, int32_t i) {
     const zt_object *first = &e->moments->objects[i];
     for (int32_t m = 1; m < e->moment_count; m++)
-        if (memcmp(&first->plane, &e->moments[m].objects[i].plane, numbers_size(first->shape)))
-            return true;
+        if (!zt_object_stays(first, &e->moments[m].objects[i])) return true;
     return false;
 }
 
@@ -221,11 +209,12 @@ static void bound_motion(zt_making *m, const double *poses, int32_t count,
     }
     solid_form form = form_of(kind, p, q);
     vec3 all_low, all_high;
-    for (int32_t i = 0; i < count; i++) {
+    bound_pose(&all_low, &all_high, poses, kind, &form);
+    for (int32_t i = 1; i < count; i++) {
         vec3 low, high;
         bound_pose(&low, &high, poses + i * ZT_POSE_NUMBERS, kind, &form);
-        all_low = i > 0 ? vec3_min(all_low, low) : low;
-        all_high = i > 0 ? vec3_max(all_high, high) : high;
+        all_low = vec3_min(all_low, low);
+        all_high = vec3_max(all_high, high);
     }
     ZT_REAL_NAME(zt_set_bounds)(m, all_low, all_high);
 }
@@ -283,7 +272,7 @@ zt_status ZT_REAL_NAME(zt_prepare_motion)(bool *there, zt_making *m, const zt_co
         memset(pose, 0, ZT_POSE_NUMBERS * sizeof *pose);
         make_pose(pose, &c->exposure->moments[k].objects[i], &zt_course_worlds(c, k)[i], kind,
                   &axes);
-        moves |= memcmp(c->poses, pose, (size_t)size * sizeof *pose) != 0;
+        moves |= !zt_bits_equal(c->poses, pose, (size_t)size * sizeof *pose);
         for (int n = 0; n < size; n++) *there &= isfinite(pose[n]);
     }
     if (!moves || !*there) return ZT_OK;
@@ -332,7 +321,7 @@ zt_status ZT_REAL_NAME(zt_prepare_looks)(zt_change *change, const zt_object *obj
     zt_looks first = looks_at(c, i, 0);
     for (int32_t k = 1; k < count && !changes; k++) {
         zt_looks looks = looks_at(c, i, k);
-        changes = memcmp(&looks, &first, sizeof looks) != 0;
+        changes = !zt_bits_equal(&looks, &first, sizeof looks);
     }
     if (!changes) return ZT_OK;
     zt_looks *all = ZT_PUSH(c->arena, zt_looks, (size_t)count);

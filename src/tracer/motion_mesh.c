@@ -1,6 +1,4 @@
 /* The places of meshes that move. Compiled once for each precision. */
-#include <string.h>
-
 #include "base/diag.h"
 #include "tracer/motion.h"
 
@@ -18,7 +16,8 @@ zt_status ZT_REAL_NAME(zt_prepare_mesh_motion)(bool *there, zt_making *m,
     const zt_exposure *e = c->exposure;
     const zt_mesh *mesh = &e->moments->meshes[m->object->mesh];
     const int32_t i = m->primitive->object;
-    vec3 half = vec3_scale(vec3_sub(mesh->high, mesh->low), 0.5), low, high;
+    vec3 half = vec3_scale(vec3_sub(mesh->high, mesh->low), 0.5);
+    vec3 low = {INFINITY, INFINITY, INFINITY}, high = vec3_scale(low, -1);
     vec3 middle = vec3_sub(vec3_add(mesh->low, half), mesh->origin);
     bool moves = false;
     xform *places = ZT_PUSH(c->arena, xform, (size_t)e->moment_count);
@@ -26,7 +25,7 @@ zt_status ZT_REAL_NAME(zt_prepare_mesh_motion)(bool *there, zt_making *m,
     for (int32_t k = 0; k < e->moment_count; k++) {
         xform *place = &places[k];
         *place = place_of(&e->moments[k].objects[i], &zt_course_worlds(c, k)[i], mesh);
-        moves |= memcmp(place, places, sizeof *place) != 0;
+        moves |= !xform_equal(place, places);
         double reaches[3], longest = 0;
         for (int axis = 0; axis < 3; axis++) {
             vec3 r = zt_xform_row(place, axis);
@@ -34,8 +33,8 @@ zt_status ZT_REAL_NAME(zt_prepare_mesh_motion)(bool *there, zt_making *m,
             longest = fmax(longest, vec3_max_abs(r));
         }
         vec3 at = xform_point(place, middle), reach = {reaches[0], reaches[1], reaches[2]};
-        low = k > 0 ? vec3_min(low, vec3_sub(at, reach)) : vec3_sub(at, reach);
-        high = k > 0 ? vec3_max(high, vec3_add(at, reach)) : vec3_add(at, reach);
+        low = vec3_min(low, vec3_sub(at, reach));
+        high = vec3_max(high, vec3_add(at, reach));
         *there &= finite3(at) && finite3(reach);
         placed->extent = real_max(placed->extent, (real)(vec3_max_abs(place->shift) +
                                                          3 * longest * (double)placed->inner));
