@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/diag.h"
+
 enum { NO_ESTIMATE = -1, NOT_YET = -2 }; /* of pixels without slots, and with new ones */
 
 /* Large pieces of zeros cost nothing until they are touched. */
@@ -26,11 +28,7 @@ zt_status zt_canvas_open(zt_canvas *canvas, int width, int height, bool is_signe
     if (count > INT32_MAX) return ZT_EMEMORY;
     if (canvas->width != width || canvas->height != height) {
         zt_canvas_close(canvas);
-        zt_status status = allocate(canvas, count);
-        if (status != ZT_OK) {
-            zt_canvas_close(canvas);
-            return status;
-        }
+        ZT_TRY(allocate(canvas, count));
         canvas->width = width;
         canvas->height = height;
     }

@@ -34,7 +34,7 @@ ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict 
                                   const float *restrict row, const float *restrict below,
                                   int width, float allowed) {
     enum { CHUNK = 256 };
-    int32_t bent[4 * CHUNK];
+    int32_t bent[4 * CHUNK] = {0};
     for (int first = 1; first < width - 1; first += CHUNK) {
         int count = min_int(CHUNK, width - 1 - first);
         const float *own = row + 4 * first, *up = above + 4 * first, *down = below + 4 * first;

@@ -103,8 +103,9 @@ static void guide_tile(void *user, int index, int worker) {
     int width = min_int(TILE_SIDE, f->image->width - left),
         height = min_int(TILE_SIDE, f->image->height - top), count = width * height;
     for (int i = 0; i < count; i++) {
+        int row = top + i / width;
         own->places.x[i] = (float)(left + i % width) + 0.5f;
-        own->places.y[i] = (float)(top + i / width) + 0.5f;
+        own->places.y[i] = (float)row + 0.5f;
     }
     aim(&own->rays, f->job->lens, own->places.x, own->places.y, count);
     zt_probe probes[ZT_BATCH];

@@ -2,8 +2,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
+#include "base/bits.h"
 #include "tracer/isa.h"
 
 static const double pi = 3.14159265358979323846;
@@ -119,7 +119,7 @@ zt_status zt_lens_prepare(zt_lens **out, const zt_exposure *exposure, int width,
     set_blades(lens, first->blades);
     for (int32_t i = 0; i < count; i++) {
         views[i] = view_of(&exposure->moments[i].camera, first->position, width, height);
-        lens->moves |= memcmp(&views[i], &views[0], sizeof *views) != 0;
+        lens->moves |= !zt_bits_equal(&views[i], &views[0], sizeof *views);
         lens->opens |= vec3_max_abs(views[i].wide) > 0 || vec3_max_abs(views[i].high) > 0;
     }
     lens->still = views[0];

@@ -240,7 +240,9 @@ static uint8_t level_of(double width, double across, double down) {
 static void mark_piece(uint8_t *least, const zt_thin *thin, const vec3 *corners, double near,
                        double thickness, int reach) {
     point points[CLIPPED], hull[CLIPPED + 1];
-    int count = make_hull(hull, points, clip(points, thin, corners, near));
+    int count = clip(points, thin, corners, near);
+    if (count < 1) return;
+    count = make_hull(hull, points, count);
     double width = least_width(hull, count), far = near, room = reach + 0.5;
     for (int i = 0; i < CORNERS; i++) far = fmax(far, corners[i].z);
     width = fmin(width, thickness / (thin->is_flat ? thin->step : thin->step * far));
