@@ -127,7 +127,7 @@ static void read_samples(zt_sampling *sampling, zt_mistakes *mistakes, const zt_
     if (max > SAMPLES_MAX) max = SAMPLES_MAX;
     read &= !max_node || zt_read_integer(&max, mistakes, max_node, "max", 1, SAMPLES_MAX);
     if (!read) return;
-    if (min_node && max < min) {
+    if (min_node && max_node && max < min) {
         zt_mistake(mistakes, &max_node->place, "\"max\" is %s, and \"min\" is %s",
                    zt_show(max_node->text).text, zt_show(min_node->text).text);
         zt_mistake_note(mistakes, &min_node->place, "\"min\" stands here");
