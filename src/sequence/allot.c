@@ -87,12 +87,12 @@ zt_status zt_renderer_budget(zt_renderer *r, const zt_frames *frames, const zt_b
     if (frames->count < 1 || (budget->frame_s > 0) == (budget->film_s > 0)) return ZT_EARGUMENT;
     zt_pacing_free(&r->pacing);
     zt_pacing *p = calloc(1, sizeof *p);
-    int64_t *numbers = calloc((size_t)frames->count, sizeof *numbers);
-    if (p) p->plan.frames = numbers;
-    if (!p || !numbers) {
-        zt_pacing_free(&p);
+    int64_t *numbers = p ? calloc((size_t)frames->count, sizeof *numbers) : NULL;
+    if (!numbers) {
+        free(p);
         return ZT_EMEMORY;
     }
+    p->plan.frames = numbers;
     memcpy(numbers, frames->numbers, (size_t)frames->count * sizeof *numbers);
     p->plan.frame_count = frames->count;
     p->plan.budget = *budget;

@@ -1,7 +1,5 @@
 /* What random numbers are keyed by: hashes of what an exposure holds, number by number, since
  * structs have bytes between their fields that say nothing. */
-#include <string.h>
-
 #include "base/hash.h"
 #include "base/random.h"
 #include "sequence/shutter.h"
@@ -129,21 +127,19 @@ static void put_light(stream *s, const zt_light *l, int32_t index) {
     put(s, l->height);
 }
 
-/* All of a scene; of a later moment only what is not as at the first one. Scenes of one
- * exposure are copies of one, so that bytes of equal things are equal. */
+/* All of a scene; of a later moment only what is not as at the first one. */
 static void put_scene(stream *s, const zt_scene *scene, const zt_scene *first) {
     bool all = scene == first;
     put_camera(s, &scene->camera);
     put(s, scene->reflection_depth);
     for (int32_t i = 0; i < scene->object_count; i++)
-        if (all || memcmp(&scene->objects[i], &first->objects[i], sizeof *scene->objects) != 0)
+        if (all || !zt_object_equal(&scene->objects[i], &first->objects[i]))
             put_object(s, &scene->objects[i], i);
     for (int32_t i = 0; i < scene->material_count; i++)
-        if (all ||
-            memcmp(&scene->materials[i], &first->materials[i], sizeof *scene->materials) != 0)
+        if (all || !zt_material_equal(&scene->materials[i], &first->materials[i]))
             put_material(s, &scene->materials[i], i);
     for (int32_t i = 0; i < scene->light_count; i++)
-        if (all || memcmp(&scene->lights[i], &first->lights[i], sizeof *scene->lights) != 0)
+        if (all || !zt_light_equal(&scene->lights[i], &first->lights[i]))
             put_light(s, &scene->lights[i], i);
 }
 
@@ -182,7 +178,7 @@ zt_hash zt_shutter_view(const zt_exposure *exposure) {
     s.count = 0;
     put_camera(&s, first);
     for (int32_t i = 1; i < exposure->moment_count; i++)
-        moves |= memcmp(&exposure->moments[i].camera, first, sizeof *first) != 0;
+        moves |= !zt_camera_equal(&exposure->moments[i].camera, first);
     /* Of a still one, what else moves may ask for more moments or fewer. */
     for (int32_t i = 1; moves && i < exposure->moment_count; i++) {
         put(&s, exposure->times[i]);

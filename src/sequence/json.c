@@ -16,23 +16,22 @@ static const size_t size_max = (size_t)1 << 30; /* ten times the longest film's 
 static char *read_stream(FILE *file, size_t *length) {
     char *text = NULL;
     size_t capacity = 0;
-    for (*length = 0; !feof(file);) {
+    *length = 0;
+    do {
         if (capacity - *length < 2) {
             capacity = capacity ? 2 * capacity : 1 << 16;
             char *larger = capacity <= size_max ? realloc(text, capacity) : NULL;
             if (!larger) {
+                free(text);
                 errno = capacity <= size_max ? ENOMEM : EFBIG;
-                break;
+                return NULL;
             }
             text = larger;
         }
         *length += fread(text + *length, 1, capacity - *length - 1, file);
-        if (ferror(file)) break;
-    }
-    if (feof(file)) {
-        text[*length] = '\0';
-        return text;
-    }
+    } while (!feof(file) && !ferror(file));
+    text[*length] = '\0';
+    if (!ferror(file)) return text;
     free(text);
     return NULL;
 }

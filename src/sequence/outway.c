@@ -54,7 +54,7 @@ struct zt_outway {
     int worker_count;
 };
 
-static parcel *parcel_of(zt_outway *way, int64_t index) {
+static parcel *parcel_of(const zt_outway *way, int64_t index) {
     return &way->ring[index % way->capacity];
 }
 
@@ -114,19 +114,23 @@ static void write_oldest(zt_outway *way) {
     cnd_broadcast(&way->went);
 }
 
+static bool may_write(const zt_outway *way) {
+    return !way->writing && way->written < way->taken && parcel_of(way, way->written)->ready;
+}
+
 /* What is left when a worker goes is the work of one that will look again. */
 static void work(void *user) {
     zt_outway *way = user;
     mtx_lock(&way->mutex);
     for (;;) {
-        if (!way->writing && way->written < way->taken && parcel_of(way, way->written)->ready)
+        while (!may_write(way) && way->taken >= way->sent && !way->closing)
+            cnd_wait(&way->came, &way->mutex);
+        if (may_write(way))
             write_oldest(way);
         else if (way->taken < way->sent)
             make_next(way);
-        else if (way->closing)
-            break;
         else
-            cnd_wait(&way->came, &way->mutex);
+            break;
     }
     mtx_unlock(&way->mutex);
 }

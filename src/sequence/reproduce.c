@@ -3,10 +3,10 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <zoetrope/aov.h>
 
+#include "base/bits.h"
 #include "base/diag.h"
 #include "base/text.h"
 #include "image/color.h"
@@ -144,8 +144,6 @@ static int list_planes(plane planes[PLANES_MAX], const zt_origin *o, const zt_im
     return count;
 }
 
-static bool same_number(const float *a, const float *b) { return memcmp(a, b, sizeof *a) == 0; }
-
 static double size_of(const zt_deviation *d) {
     double size = fabs(d->is - d->was);
     return isnan(size) ? INFINITY : size;
@@ -157,7 +155,7 @@ static void compare_pixel(zt_reproduction *r, const plane *planes, int count, in
     for (const plane *p = planes; p < planes + count; p++) {
         const float *was = p->was + pixel * (size_t)p->stride,
                     *is = p->is + pixel * (size_t)p->stride;
-        if (same_number(was, is)) continue;
+        if (zt_bits_equal(was, is, sizeof *is)) continue;
         const zt_deviation d = {column, row, p->channel, (double)*was, (double)*is};
         if (r->different_count == 0 && first) r->largest = d;
         if (size_of(&d) > size_of(&r->largest)) r->largest = d;

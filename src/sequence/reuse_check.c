@@ -1,16 +1,16 @@
 #include "sequence/reuse_check.h"
 
 #include <inttypes.h>
-#include <string.h>
 
+#include "base/bits.h"
 #include "base/diag.h"
 #include "render/guides.h"
 
 /* The first number that differs, or -1. */
 static int64_t find_difference(const float *a, const float *b, int64_t count) {
-    if (memcmp(a, b, (size_t)count * sizeof *a) == 0) return -1;
+    if (zt_bits_equal(a, b, (size_t)count * sizeof *a)) return -1;
     for (int64_t i = 0; i < count; i++)
-        if (memcmp(&a[i], &b[i], sizeof *a) != 0) return i;
+        if (!zt_bits_equal(&a[i], &b[i], sizeof *a)) return i;
     return -1;
 }
 
