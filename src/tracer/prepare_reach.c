@@ -53,13 +53,13 @@ static real blocking_size(const zt_primitive *p) {
 /* The largest, and of those that are as large the first. */
 static void choose_blockers(zt_reach *reach, const zt_tracer *tracer) {
     real sizes[ZT_BLOCKERS_MAX];
+    int32_t count = 0;
     for (int32_t i = 0; i < tracer->primitive_count; i++) {
         real size = blocking_size(&tracer->primitives[i]);
-        int32_t at = reach->blocker_count;
+        int32_t at = count;
         while (at > 0 && sizes[at - 1] < size) at--;
         if (!(size > 0) || at == ZT_BLOCKERS_MAX) continue;
-        int32_t last = reach->blocker_count < ZT_BLOCKERS_MAX ? reach->blocker_count++
-                                                              : ZT_BLOCKERS_MAX - 1;
+        int32_t last = count < ZT_BLOCKERS_MAX ? count++ : ZT_BLOCKERS_MAX - 1;
         for (int32_t k = last; k > at; k--) {
             sizes[k] = sizes[k - 1];
             reach->blockers[k] = reach->blockers[k - 1];
@@ -67,6 +67,7 @@ static void choose_blockers(zt_reach *reach, const zt_tracer *tracer) {
         sizes[at] = size;
         reach->blockers[at] = i;
     }
+    reach->blocker_count = count;
 }
 
 zt_status ZT_REAL_NAME(zt_prepare_reach)(zt_tracer *tracer, zt_arena *arena) {
