@@ -42,6 +42,7 @@ static const char *said(size_t *size, const char *format, ...) {
 }
 
 static void assert_says(const char *text, const char *words) {
+    assert_non_null(text);
     if (!strstr(text, words)) fail_msg("no \"%s\" in:\n%s", words, text);
 }
 
