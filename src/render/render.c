@@ -267,11 +267,6 @@ static bool can_tell_edges(const zt_render_job *job) {
            !zt_lens_moves(job->lens);
 }
 
-bool zt_render_is_even(const zt_render_job *job) {
-    const zt_sampling *s = &job->sampling;
-    return s->max == 1 || (s->min >= s->max && !s->edges && !zt_warp_is_signed(job->warp));
-}
-
 /* As many samples in each pixel, or wherever they are wanted. */
 static zt_status render_all(zt_frame *f) {
     const zt_render_job *job = f->job;

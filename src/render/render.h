@@ -46,7 +46,10 @@ typedef struct zt_render_job {
 } zt_render_job;
 
 /* Whether each pixel takes as many samples, which follow from nothing else. */
-bool zt_render_is_even(const zt_render_job *job);
+static inline bool zt_render_is_even(const zt_render_job *job) {
+    const zt_sampling *s = &job->sampling;
+    return s->max == 1 || (s->min >= s->max && !s->edges && !zt_warp_is_signed(job->warp));
+}
 
 /* What keeps tiles of such frames from being copied from one to the next where the camera
  * stands still, as a sentence; NULL: nothing does. */

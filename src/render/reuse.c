@@ -65,12 +65,10 @@ const char *zt_reuse_hindrance(const zt_render_job *job) {
                "before";
     if (zt_lens_has_aperture(job->lens))
         return "each frame looks through other points of the lens: no tiles are copied from "
-               "the "
-               "frame before, but with a fixed seed";
+               "the frame before, but with a fixed seed";
     if (job->scene->random)
         return "each frame looks at other points of lamps with a size: tiles that face them "
-               "are "
-               "not copied from the frame before, but with a fixed seed";
+               "are not copied from the frame before, but with a fixed seed";
     return NULL;
 }
 

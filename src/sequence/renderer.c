@@ -166,6 +166,28 @@ static zt_status prepare_passage(zt_taking *t, zt_renderer *r, const zt_image *i
                               t->exposure.moments[0].camera.position, &r->frame);
 }
 
+/* Adds the cost of the last frame to those of all. */
+static void add_cost(zt_renderer *r) {
+    const zt_frame_cost *cost = &r->cost;
+    const zt_ray_counts *rays = &cost->rays;
+    zt_stats *s = &r->stats;
+    s->frames++;
+    s->primary.traced += rays->primary;
+    s->primary.avoided += rays->primary_avoided;
+    if (cost->tiles_copied > 0)
+        s->primary.avoided +=
+            (int64_t)r->format.width * r->format.height * r->sampling.max - rays->primary;
+    s->shadow.traced += rays->shadow;
+    s->shadow.avoided += rays->shadow_avoided;
+    s->mirror.traced += rays->mirror;
+    s->mirror.avoided += rays->mirror_avoided;
+    s->tiles += cost->tiles;
+    s->copied_tiles += cost->tiles_copied;
+    s->freeze_s += cost->freeze_s;
+    s->prepare_s += cost->prepare_s;
+    s->render_s += cost->render_s;
+}
+
 static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *reuse,
                       const zt_watcher *watcher) {
     if (image->width != r->format.width || image->height != r->format.height)
@@ -187,7 +209,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     r->cost.rays = count.rays;
     r->cost.tiles = count.tiles;
     r->cost.tiles_copied = count.tiles_copied;
-    zt_renderer_count(r);
+    add_cost(r);
     if (count.left_out > 0)
         zt_tell(r->listener, ZT_WARNING,
                 "frame %" PRId64 ": %" PRId64 " samples were not finite and are left out",

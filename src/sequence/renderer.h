@@ -70,9 +70,6 @@ zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t 
 zt_status zt_renderer_take(zt_renderer *renderer, int64_t frame, zt_image *image,
                            const zt_watcher *watcher);
 
-/* Adds the cost of the last frame to those of all. */
-void zt_renderer_count(zt_renderer *renderer);
-
 /* Says what was chosen for a frame that is ready, and why. */
 void zt_renderer_say(zt_frame_choices *choices, const zt_renderer *renderer,
                      const zt_ready *ready, const zt_exposure *exposure,

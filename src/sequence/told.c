@@ -16,27 +16,6 @@
 
 zt_stats zt_renderer_stats(const zt_renderer *r) { return r->stats; }
 
-void zt_renderer_count(zt_renderer *r) {
-    const zt_frame_cost *cost = &r->cost;
-    const zt_ray_counts *rays = &cost->rays;
-    zt_stats *s = &r->stats;
-    s->frames++;
-    s->primary.traced += rays->primary;
-    s->primary.avoided += rays->primary_avoided;
-    if (cost->tiles_copied > 0)
-        s->primary.avoided +=
-            (int64_t)r->format.width * r->format.height * r->sampling.max - rays->primary;
-    s->shadow.traced += rays->shadow;
-    s->shadow.avoided += rays->shadow_avoided;
-    s->mirror.traced += rays->mirror;
-    s->mirror.avoided += rays->mirror_avoided;
-    s->tiles += cost->tiles;
-    s->copied_tiles += cost->tiles_copied;
-    s->freeze_s += cost->freeze_s;
-    s->prepare_s += cost->prepare_s;
-    s->render_s += cost->render_s;
-}
-
 void zt_libraries(zt_library libraries[ZT_LIBRARY_COUNT]) {
     static const struct {
         const char *name, *what, *module;
