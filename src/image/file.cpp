@@ -77,7 +77,7 @@ bool write_floats(OIIO::ImageOutput &output, const zt_image *image, const Part &
         return false;
     for (size_t i = 0; i < pixel_count; i++) {
         unsigned char *to = bytes.data() + i * pixel_bytes;
-        memcpy(to, stored.data() + i * colour_bytes, colour_bytes);
+        std::copy_n(stored.data() + i * colour_bytes, colour_bytes, to); /* may be of none */
         to += colour_bytes;
         for (int c : part.channels) {
             memcpy(to, image->channels[c].values + i, sizeof(float));
