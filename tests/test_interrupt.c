@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <time.h>
 
 #include <cmocka.h>
 #include <libavcodec/avcodec.h>
@@ -105,27 +106,32 @@ static void write_longer(const char *path, const char *duration) {
     write_text(path, text);
 }
 
-/* Killed at any moment, again and again, the same command ends with the same file, and nothing
- * is left beside it. */
+/* Killed at any moment of what it takes, again and again, the same command ends with the same
+ * file, and nothing is left beside it. */
 static void kills(void **state) {
     (void)state;
     const char *const targets[] = {"film.mp4", "film.gif"};
-    srand(3);
+    enum { KILLS = 8 };
     write_longer("longer.yaml", "16 s");
     for (int i = 0; i < 2; i++) {
         char whole[64], command[128];
         snprintf(whole, sizeof whole, "whole-%s", targets[i]);
         snprintf(command, sizeof command, "render longer.yaml --samples 256 -o %s", whole);
+        struct timespec begun, done;
+        clock_gettime(CLOCK_MONOTONIC, &begun);
         zoetrope_succeeds(command);
+        clock_gettime(CLOCK_MONOTONIC, &done);
+        double took_us = 1e6 * difftime(done.tv_sec, begun.tv_sec) +
+                         1e-3 * (double)(done.tv_nsec - begun.tv_nsec);
         snprintf(command, sizeof command, "render longer.yaml --samples 256 -o %s", targets[i]);
         int killed_count = 0;
-        for (int k = 0; k < 8; k++) {
+        for (int k = 0; k < KILLS; k++) { /* the first one long before it can be done */
             posix_spawn_file_actions_t actions;
             posix_spawn_file_actions_init(&actions);
             posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
             pid_t pid = start(&actions, command);
             posix_spawn_file_actions_destroy(&actions);
-            usleep((useconds_t)(rand() % 400000));
+            usleep((useconds_t)(took_us * (k + 1) / (2 * KILLS)));
             kill(pid, SIGKILL);
             int status;
             assert_int_equal(waitpid(pid, &status, 0), pid);
