@@ -150,9 +150,9 @@ static void take_samples(const round_job *j, zt_render_thread *own, const int32_
     for (int k = 0; k < now; k++) {
         int half = done + k >= first_half;
         if (j->is_signed)
-            own->count.left_out -= take_negative(&own->sums.negative[half], &own->light,
-                                                 own->places.weight, k * count, count,
-                                                 f->job->transparent);
+            own->count.left_out -=
+                take_negative(&own->sums.negative[half], &own->light, own->places.weight,
+                              k * count, count, f->job->transparent);
         own->count.left_out +=
             add_samples(&own->sums.positive[half], &own->light, k * count, count);
         if (f->job->transparent)
