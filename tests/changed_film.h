@@ -64,8 +64,6 @@ static inline void open_changed(zt_animation **animation, zt_renderer **renderer
     assert_int_equal(zt_renderer_open(renderer, *animation, &settings, listener_of(h)), ZT_OK);
 }
 
-static inline bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* Stops after so many frames. */
 typedef struct patience {
     int64_t most, done;

@@ -126,9 +126,7 @@ static bool same_image(const zt_image *a, const zt_image *b) {
     return same;
 }
 
-static bool same_key(const shown *a, const shown *b) {
-    return a->key.high == b->key.high && a->key.low == b->key.low;
-}
+static bool same_key(const shown *a, const shown *b) { return zt_hash_equal(a->key, b->key); }
 
 /* ---- all that can be keyed ------------------------------------------------------------------
  */

@@ -61,11 +61,9 @@ static zt_manifest_line image_line(int64_t frame, int version) {
     return line;
 }
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 static void assert_same_frame(const zt_manifest_frame *a, const zt_manifest_frame *b) {
     assert_non_null(a);
-    assert_true(same(a->key, b->key) && same(a->pixels, b->pixels));
+    assert_true(zt_hash_equal(a->key, b->key) && zt_hash_equal(a->pixels, b->pixels));
     assert_true(a->render_s == b->render_s && a->min == b->min && a->max == b->max);
     assert_true(a->error == b->error && a->mean_max == b->mean_max);
     assert_true(a->budget.film_s == b->budget.film_s && a->budget.frame_s == 0);
@@ -73,7 +71,7 @@ static void assert_same_frame(const zt_manifest_frame *a, const zt_manifest_fram
 
 static void assert_same_record(const zt_output_record *a, const zt_output_record *b) {
     assert_true(a->kind == b->kind && a->first == b->first && a->count == b->count);
-    assert_true(same(a->key, b->key) && same(a->checksum, b->checksum));
+    assert_true(zt_hash_equal(a->key, b->key) && zt_hash_equal(a->checksum, b->checksum));
     assert_true(a->bytes == b->bytes && a->render_s == b->render_s);
     if (b->file) assert_string_equal(a->file, b->file);
 }

@@ -65,9 +65,7 @@ static zt_hash render_hash(zt_renderer *renderer, int64_t frame) {
     return hash;
 }
 
-static void assert_same(zt_hash a, zt_hash b) {
-    assert_true(a.high == b.high && a.low == b.low);
-}
+static void assert_same(zt_hash a, zt_hash b) { assert_true(zt_hash_equal(a, b)); }
 
 /* 1 thread against 4; forwards against backwards; a renderer that did nothing else before. */
 static void test_same_bits(void **state) {

@@ -156,7 +156,7 @@ static zt_status print_held(zt_renderer *renderer, int64_t first, int64_t last) 
         zt_hash key = {0};
         if (frame <= last) status = zt_renderer_key(&key, renderer, frame);
         if (status != ZT_OK) break;
-        if (frame <= last && key.low == held.low && key.high == held.high) continue;
+        if (frame <= last && zt_hash_equal(key, held)) continue;
         if (frame - since > 1)
             printf("frames %" PRId64 " to %" PRId64 " hold still: rendered once\n", since,
                    frame - 1);

@@ -8,8 +8,7 @@ enum { SENTENCE_MAX = 1024, SHOWN_MAX = 48 };
 
 static bool told_before(const zt_sentences *sentences, zt_hash hash) {
     for (int i = 0; i < sentences->count; i++)
-        if (sentences->told[i].high == hash.high && sentences->told[i].low == hash.low)
-            return true;
+        if (zt_hash_equal(sentences->told[i], hash)) return true;
     return false;
 }
 

@@ -86,15 +86,11 @@ static char *manner_of(const stills *images, const zt_output_format *format) {
     return manner;
 }
 
-static bool is_known(zt_hash hash) { return hash.high || hash.low; }
-
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* The key of a record: of what an image shows and how it is written. Zero where the first is
  * not known. */
 static zt_status key_of(zt_hash *key, const stills *images, zt_hash shown) {
     *key = (zt_hash){0};
-    if (!is_known(shown)) return ZT_OK;
+    if (!zt_hash_is_known(shown)) return ZT_OK;
     char *text =
         zt_text_print("%016" PRIx64 "%016" PRIx64 " %s", shown.high, shown.low, images->manner);
     if (!text) return ZT_EMEMORY;
@@ -200,7 +196,7 @@ static bool is_whole(const stills *images, const zt_output_record *record) {
         good = add_file(&size, &checksum, path, i);
         free(path);
     }
-    return good && size == record->bytes && same(checksum, record->checksum);
+    return good && size == record->bytes && zt_hash_equal(checksum, record->checksum);
 }
 
 /* In doubt, an image is wanted: making it again is never wrong. */
@@ -210,7 +206,7 @@ static bool wants_still(void *state, int64_t position) {
     zt_hash key;
     const zt_output_record *record = record_of(images, plan->frames[position]);
     if (plan->overwrites || !record || key_of(&key, images, plan->keys[position]) != ZT_OK ||
-        !is_known(key) || !same(key, record->key))
+        !zt_hash_is_known(key) || !zt_hash_equal(key, record->key))
         return true;
     return !is_whole(images, record);
 }

@@ -266,7 +266,7 @@ static bool is_whole(const movie *m) {
 static zt_status tell_finished(movie *m) {
     const zt_output_plan *plan = m->format.plan;
     zt_hash key = m->growth.film_key;
-    if (!plan || !plan->completed || !is_whole(m) || (!key.high && !key.low)) return ZT_OK;
+    if (!plan || !plan->completed || !is_whole(m) || !zt_hash_is_known(key)) return ZT_OK;
     zt_output_record record;
     ZT_TRY(zt_video_finished_record(&record, m->ear.target, key, plan, &m->ear));
     return plan->completed(plan->user, &record);

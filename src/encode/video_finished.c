@@ -65,9 +65,9 @@ bool zt_video_finished_is(const char *path, zt_hash key, const zt_output_plan *p
         if (plan->records[i].kind == ZT_RECORD_FILM) last = &plan->records[i];
     zt_hash checksum;
     int64_t size;
-    if ((!key.high && !key.low) || !last || last->count != plan->count ||
-        last->key.high != key.high || last->key.low != key.low)
+    if (!zt_hash_is_known(key) || !last || last->count != plan->count ||
+        !zt_hash_equal(last->key, key))
         return false;
     return read_file(&checksum, &size, path) && size == last->bytes &&
-           checksum.high == last->checksum.high && checksum.low == last->checksum.low;
+           zt_hash_equal(checksum, last->checksum);
 }

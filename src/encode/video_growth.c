@@ -15,8 +15,6 @@ enum { GOPS_A_PIECE = 2 };
  * few. */
 #define SPOOLED_S 0.02
 
-static bool is_known(zt_hash hash) { return hash.high || hash.low; }
-
 static zt_hash mix(zt_hash before, const void *bytes, size_t size) {
     const zt_hash both[] = {before, zt_hash_bytes(bytes, size)};
     return zt_hash_bytes(both, sizeof both);
@@ -45,7 +43,7 @@ static void find_manner(zt_video_growth *g, const zt_output_format *format,
 }
 
 static zt_hash frame_key(const zt_video_growth *g, int64_t position) {
-    if (!g->plan || position >= g->plan->count || !is_known(g->plan->keys[position]))
+    if (!g->plan || position >= g->plan->count || !zt_hash_is_known(g->plan->keys[position]))
         return (zt_hash){0};
     return mix(g->manner, &g->plan->keys[position], sizeof(zt_hash));
 }
@@ -54,7 +52,7 @@ static zt_hash key_of(const zt_video_growth *g, int64_t first, int64_t count) {
     zt_hash all = mix(g->manner, &count, sizeof count);
     for (int64_t i = first; i < first + count; i++) {
         zt_hash key = frame_key(g, i);
-        if (!is_known(key)) return key;
+        if (!zt_hash_is_known(key)) return key;
         all = mix(all, &key, sizeof key);
     }
     return all;
@@ -103,8 +101,7 @@ static bool wish(const zt_video_growth *g, zt_video_wished *wished) {
             continue;
         int64_t count = frames_of(g, index);
         zt_hash key = key_of(g, r->first, count);
-        if (r->count != count || !is_known(key) || key.high != r->key.high ||
-            key.low != r->key.low)
+        if (r->count != count || !zt_hash_is_known(key) || !zt_hash_equal(key, r->key))
             continue;
         wished[index] = (zt_video_wished){count, key, r->checksum, r->render_s};
         some = true;
@@ -147,7 +144,7 @@ static zt_status find_kept(zt_video_growth *g) {
 static zt_status follow_plan(zt_video_growth *g, const char *target, zt_hash said) {
     bool keeps = !g->plan->overwrites;
     zt_hash all = key_of(g, 0, g->plan->count);
-    if (is_known(all)) g->film_key = mix(all, &said, sizeof said);
+    if (zt_hash_is_known(all)) g->film_key = mix(all, &said, sizeof said);
     ZT_TRY(find_pieces(g));
     g->untouched = keeps && zt_video_finished_is(target, g->film_key, g->plan);
     if (keeps && !g->untouched) ZT_TRY(take_older(g, target));
@@ -228,7 +225,7 @@ static zt_status encode(zt_video_growth *g, const AVFrame *frame) {
 
 static zt_status tell_piece(const zt_video_growth *g) {
     const zt_video_piece *p = &g->part.pieces[g->part.count - 1];
-    if (!g->plan || !g->plan->completed || !is_known(p->key)) return ZT_OK;
+    if (!g->plan || !g->plan->completed || !zt_hash_is_known(p->key)) return ZT_OK;
     const zt_output_record record = {.kind = ZT_RECORD_PIECE,
                                      .first = p->first,
                                      .count = p->count,
@@ -301,7 +298,7 @@ static zt_status catch_up(zt_video_growth *g) {
 zt_status zt_video_growth_put(zt_video_growth *g, AVFrame *frame, double render_s) {
     ZT_TRY(catch_up(g));
     zt_hash key = frame_key(g, g->next);
-    if (is_known(key) && render_s >= SPOOLED_S)
+    if (zt_hash_is_known(key) && render_s >= SPOOLED_S)
         ZT_TRY(zt_video_spool_put(&g->spool, frame, g->next, key, render_s));
     return encode_frame(g, frame, render_s);
 }

@@ -54,14 +54,12 @@ static zt_status finish(older *o) {
     }
     ZT_TRY(zt_video_part_finish(o->part, o->count, wish->key, wish->render_s));
     zt_hash found = o->part->pieces[o->part->count - 1].checksum;
-    if (found.high != wish->checksum.high || found.low != wish->checksum.low)
-        zt_video_part_take_back(o->part);
+    if (!zt_hash_equal(found, wish->checksum)) zt_video_part_take_back(o->part);
     return ZT_OK;
 }
 
 static bool is_wished(const older *o, int64_t index) {
-    return index >= 0 && index < o->wished_count &&
-           (o->wished[index].checksum.high || o->wished[index].checksum.low);
+    return index >= 0 && index < o->wished_count && zt_hash_is_known(o->wished[index].checksum);
 }
 
 static zt_status take_packet(older *o) {

@@ -78,8 +78,6 @@ static int examine(const zt_video_part *p, zt_video_piece *piece) {
     return error == AVERROR_EOF ? 0 : error;
 }
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* Reads the mark at `at`. False where there is none of a piece that the file has room for. */
 static bool read_mark(mark *found, const zt_video_part *p, int64_t at, int64_t size) {
     uint8_t bytes[MARK_SIZE];
@@ -101,7 +99,7 @@ static zt_status recover(zt_video_part *p, int64_t size) {
         piece.end = at = piece.begin + found.length;
         piece.render_s = found.render_s;
         if (examine(p, &piece) >= 0 && piece.count == found.count &&
-            piece.delay == found.delay && same(piece.checksum, found.checksum))
+            piece.delay == found.delay && zt_hash_equal(piece.checksum, found.checksum))
             ZT_TRY(push(p, &piece));
     }
     return ZT_OK;
@@ -144,10 +142,10 @@ zt_status zt_video_part_open(zt_video_part *p, const char *path,
 }
 
 int64_t zt_video_part_find(const zt_video_part *p, int64_t first, int64_t count, zt_hash key) {
-    if (!key.high && !key.low) return -1;
+    if (!zt_hash_is_known(key)) return -1;
     for (int64_t i = p->count - 1; i >= 0; i--)
         if (p->pieces[i].first == first && p->pieces[i].count == count &&
-            same(p->pieces[i].key, key))
+            zt_hash_equal(p->pieces[i].key, key))
             return i;
     return -1;
 }

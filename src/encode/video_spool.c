@@ -43,7 +43,7 @@ static bool is_like(const zt_video_spool *s, const head *h) {
     zt_hash checksum = zt_hash_bytes(s->bytes, (size_t)s->frame_size);
     return memcmp(h->magic, magic, sizeof magic) == 0 && h->width == s->like->width &&
            h->height == s->like->height && h->format == s->like->format &&
-           h->checksum.high == checksum.high && h->checksum.low == checksum.low;
+           zt_hash_equal(h->checksum, checksum);
 }
 
 static bool get(const zt_video_spool *s, void *bytes, size_t size, int64_t at) {
@@ -103,9 +103,8 @@ zt_status zt_video_spool_open(zt_video_spool *s, const char *path, const AVFrame
 
 const zt_video_spooled *zt_video_spool_find(const zt_video_spool *s, int64_t position,
                                             zt_hash key) {
-    for (int64_t i = 0; i < s->count && (key.high || key.low); i++)
-        if (s->frames[i].position == position && s->frames[i].key.high == key.high &&
-            s->frames[i].key.low == key.low)
+    for (int64_t i = 0; i < s->count && zt_hash_is_known(key); i++)
+        if (s->frames[i].position == position && zt_hash_equal(s->frames[i].key, key))
             return &s->frames[i];
     return NULL;
 }

@@ -119,7 +119,7 @@ zt_status zt_reuse_begin(zt_frame *f) {
     f->keeps = f->copies = false;
     if (!r) return ZT_OK;
     zt_hash view = f->job->view;
-    bool still = view.high == r->view.high && view.low == r->view.low;
+    bool still = zt_hash_equal(view, r->view);
     r->view = view;
     if (!still) {
         r->whole = false;

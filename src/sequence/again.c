@@ -8,8 +8,6 @@
 enum { IMAGES_MAX = 64 };
 static const size_t bytes_max = (size_t)1 << 30;
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* ---- positions by their keys ----------------------------------------------------------------
  */
 
@@ -38,7 +36,8 @@ static place *sort_places(const zt_hash *keys, int64_t count) {
     for (int64_t i = 0; i < count; i++) places[i] = (place){keys[i], i, i};
     qsort(places, (size_t)count, sizeof *places, by_key);
     for (int64_t i = 1; i < count; i++)
-        if (same(places[i].key, places[i - 1].key)) places[i].first = places[i - 1].first;
+        if (zt_hash_equal(places[i].key, places[i - 1].key))
+            places[i].first = places[i - 1].first;
     return places;
 }
 
@@ -83,8 +82,8 @@ static zt_status find_next(zt_again *a) {
         int64_t later = -1; /* the last wanted one that was seen */
         for (int64_t i = a->count - 1; i >= 0; i--) {
             const place *p = &places[i];
-            bool ends =
-                i + 1 == a->count || !same(p->key, p[1].key) || !(p->key.high || p->key.low);
+            bool ends = i + 1 == a->count || !zt_hash_equal(p->key, p[1].key) ||
+                        !zt_hash_is_known(p->key);
             if (ends) later = -1;
             a->next[p->position] = later;
             if (a->wanted[p->position]) later = p->position;
@@ -109,7 +108,7 @@ zt_status zt_again_open(zt_again **out, const zt_hash *keys, const bool *wanted,
 static kept *kept_of(const zt_again *a, int64_t position) {
     for (int i = 0; i < IMAGES_MAX; i++) {
         const kept *k = &a->kept[i];
-        if (k->image && same(k->key, a->keys[position])) return (kept *)k;
+        if (k->image && zt_hash_equal(k->key, a->keys[position])) return (kept *)k;
     }
     return NULL;
 }
@@ -172,7 +171,7 @@ zt_status zt_again_keep(zt_again *a, int64_t position, const zt_image *image) {
     if (!k) k = place_for(a, image, next);
     if (!k) return ZT_OK;
     if (!k->image) ZT_TRY(create_like(&k->image, image));
-    if (!same(k->key, a->keys[position])) zt_again_copy(k->image, image);
+    if (!zt_hash_equal(k->key, a->keys[position])) zt_again_copy(k->image, image);
     k->key = a->keys[position];
     k->next = next;
     return ZT_OK;

@@ -55,8 +55,6 @@ typedef struct zt_diff_memory {
     zt_arena arena;
 } zt_diff_memory;
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* Adds a frame behind the others. */
 static zt_status add_frame(growing *g, int64_t frame) {
     zt_frame_spans *s = &g->spans;
@@ -194,8 +192,8 @@ static zt_status compare_frame(comparing *c, int64_t frame, zt_hash *last) {
     ZT_TRY(zt_renderer_key(&is, c->newer, frame));
     bool both = frame < d->older_count;
     if (both) ZT_TRY(zt_renderer_key(&was, c->older, frame));
-    if (both && same(was, is)) return ZT_OK;
-    if (!same(is, *last)) d->frames[d->frame_count++] = frame;
+    if (both && zt_hash_equal(was, is)) return ZT_OK;
+    if (!zt_hash_equal(is, *last)) d->frames[d->frame_count++] = frame;
     *last = is;
     if (!both) return ZT_OK;
     d->changed_count++;

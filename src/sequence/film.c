@@ -45,8 +45,6 @@ typedef struct making {
     zt_settings_texts settings;
 } making;
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 static bool ends_with_any(const char *target, const char *const *endings) {
     while (*endings && !zt_text_ends_with(target, *endings, true)) endings++;
     return *endings;
@@ -134,7 +132,7 @@ static zt_status make_image(making *m, int64_t position) {
     int64_t frame = m->frames.numbers[position];
     zt_hash *key = &m->keys[position];
     if (!m->planned) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
-    bool equal = m->last && !m->timed && same(m->last->info.key, *key);
+    bool equal = m->last && !m->timed && zt_hash_equal(m->last->info.key, *key);
     const zt_image *kept = m->again && !equal ? zt_again_find(m->again, position) : NULL;
     if (!equal) {
         if (m->last) zt_outway_release(m->way, m->last);

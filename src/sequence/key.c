@@ -33,7 +33,7 @@ static zt_hash mesh_hash(const zt_mesh *m) {
 
 /* Of all meshes, once: they are the film's, and never change. */
 static zt_status find_held(zt_renderer *r) {
-    if (r->held.high || r->held.low) return ZT_OK;
+    if (zt_hash_is_known(r->held)) return ZT_OK;
     const zt_scene *rest = &r->animation->rest;
     zt_hash *hashes = calloc((size_t)rest->mesh_count + 1, sizeof *hashes);
     if (!hashes) return ZT_EMEMORY;

@@ -40,7 +40,7 @@ const zt_manifest_frame *zt_manifest_find(const zt_manifest *m, int64_t frame) {
 const zt_manifest_split *zt_manifest_split_of(const zt_manifest *m, zt_hash of, int64_t count) {
     for (size_t i = 0; i < m->split_count; i++) {
         const zt_manifest_split *s = &m->splits[i];
-        if (s->of.high == of.high && s->of.low == of.low && s->count == count) return s;
+        if (zt_hash_equal(s->of, of) && s->count == count) return s;
     }
     return NULL;
 }
@@ -52,7 +52,7 @@ double zt_manifest_time(const zt_manifest *m, int64_t frame) {
 
 bool zt_manifest_key(zt_hash *key, const zt_manifest *m, int64_t frame) {
     const zt_manifest_frame *found = zt_manifest_find(m, frame);
-    if (!found || !(found->key.high || found->key.low)) return false;
+    if (!found || !zt_hash_is_known(found->key)) return false;
     *key = found->key;
     return true;
 }

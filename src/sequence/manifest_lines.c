@@ -15,8 +15,6 @@ static const char *const precisions[] = {[ZT_PRECISION_AUTO] = "auto",
                                          [ZT_PRECISION_SINGLE] = "single",
                                          [ZT_PRECISION_DOUBLE] = "double"};
 
-static bool is_known(zt_hash hash) { return hash.high || hash.low; }
-
 /* ---- writing --------------------------------------------------------------------------------
  */
 
@@ -57,8 +55,8 @@ static void print_samples(FILE *file, const zt_manifest_frame *f) {
 static void print_frame(FILE *file, const zt_manifest_frame *f, const zt_output_record *r) {
     fprintf(file, "{\"frame\": %" PRId64, f->frame);
     if (f->max > 0) print_samples(file, f);
-    if (is_known(f->key)) print_hash(file, "key", f->key);
-    if (is_known(f->pixels)) print_hash(file, "pixels", f->pixels);
+    if (zt_hash_is_known(f->key)) print_hash(file, "key", f->key);
+    if (zt_hash_is_known(f->pixels)) print_hash(file, "pixels", f->pixels);
     if (f->render_s >= 0) print_number(file, "time", f->render_s);
     if (r->count == 0) return;
     print_text(file, "file", r->file ? r->file : "");

@@ -232,7 +232,7 @@ static zt_status render(zt_reproduction *r, zt_image *image, const zt_origin *o,
     renderer->sampling = o->memory->settings.sampling;
     renderer->aovs = o->memory->settings.aovs;
     ZT_TRY(zt_renderer_key(&key, renderer, o->image->info.frame));
-    r->same_key = key.high == was.high && key.low == was.low;
+    r->same_key = zt_hash_equal(key, was);
     ZT_TRY(zt_image_add_aovs(image, renderer->aovs));
     ZT_TRY(zt_renderer_take(renderer, o->image->info.frame, image, watcher));
     image->info = o->image->info;

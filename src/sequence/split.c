@@ -37,8 +37,7 @@ static double *known_costs(const zt_manifest *known, const zt_frames *frames) {
             free(costs);
             return NULL;
         }
-        bool held = before && f->key.high && before->key.high == f->key.high &&
-                    before->key.low == f->key.low;
+        bool held = before && zt_hash_is_known(f->key) && zt_hash_equal(before->key, f->key);
         costs[i] = held ? 0 : f->render_s;
         before = f;
     }

@@ -11,8 +11,6 @@
 #include "sequence/pacing.h"
 #include "sequence/renderer.h"
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 zt_hash zt_verify_checksum(const zt_image *image) {
     zt_hash parts[1 + ZT_IMAGE_CHANNELS_MAX];
     size_t size = (size_t)image->width * (size_t)image->height * sizeof(float);
@@ -26,7 +24,7 @@ zt_hash zt_verify_checksum(const zt_image *image) {
 static const zt_manifest_frame *finished(const zt_verify_job *job, int64_t position) {
     if (job->wanted[position]) return NULL;
     const zt_manifest_frame *f = zt_manifest_find(job->known, job->frames[position]);
-    bool known = f && same(f->key, job->keys[position]) && (f->pixels.high || f->pixels.low);
+    bool known = f && zt_hash_equal(f->key, job->keys[position]) && zt_hash_is_known(f->pixels);
     return known ? f : NULL;
 }
 
@@ -46,7 +44,7 @@ static zt_status verify(int64_t *verified, const zt_verify_job *job, const zt_ma
     zt_status status = zt_renderer_take(r, f->frame, image, watcher); /* all of it */
     r->sampling = own;
     ZT_TRY(status);
-    bool good = same(zt_verify_checksum(image), f->pixels);
+    bool good = zt_hash_equal(zt_verify_checksum(image), f->pixels);
     *verified += good;
     if (good) return ZT_OK;
     zt_tell(r->listener, ZT_ERROR,

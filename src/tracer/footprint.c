@@ -11,8 +11,6 @@ enum { PLACES_MAX = 32 };
  * roundings of a ray's end, and for the way from there to where further rays begin. */
 #define ROOM 8
 
-static bool same(zt_hash a, zt_hash b) { return a.high == b.high && a.low == b.low; }
-
 /* ---- what differs ---------------------------------------------------------------------------
  */
 
@@ -44,8 +42,8 @@ static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now
 static void add_thing(zt_differences *d, int32_t object, const zt_outline_thing *before,
                       const zt_outline_thing *now, bool same_numbers) {
     bool drawn = !same_numbers && ((before && before->moves) || (now && now->moves));
-    bool moved = !before || !now || !same(before->shape, now->shape) || drawn;
-    if (!moved && same(before->looks, now->looks)) return;
+    bool moved = !before || !now || !zt_hash_equal(before->shape, now->shape) || drawn;
+    if (!moved && zt_hash_equal(before->looks, now->looks)) return;
     d->objects |= zt_footprint_bit(object);
     if (!moved) return;
     if (before) add_place(d, before, false);
@@ -88,11 +86,11 @@ static void add_lamps(zt_differences *d, const zt_outline *before, const zt_outl
     for (int32_t i = 0; i < now->lamp_count; i++) {
         const zt_outline_lamp *a = &before->lamps[i], *b = &now->lamps[i];
         uint64_t bit = zt_footprint_bit(b->light);
-        d->light |= !same(a->place, b->place);
+        d->light |= !zt_hash_equal(a->place, b->place);
         if (!same_numbers && (a->drawn || b->drawn)) d->drawn_lamps |= bit;
-        if (!same(a->power, b->power)) d->dimmed_lamps |= bit;
+        if (!zt_hash_equal(a->power, b->power)) d->dimmed_lamps |= bit;
     }
-    d->light |= !same(before->ambient, now->ambient) ||
+    d->light |= !zt_hash_equal(before->ambient, now->ambient) ||
                 (!same_numbers && (before->ambient_moves || now->ambient_moves));
 }
 
@@ -100,7 +98,7 @@ zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
                               const zt_outline *now, bool same_numbers, zt_arena *arena) {
     *d = (zt_differences){.now = now, .stretch = 1};
     /* Of rays that were left out, and might count now, nothing is known. */
-    d->all = !same(before->rest, now->rest) || (before->blind && !now->blind) ||
+    d->all = !zt_hash_equal(before->rest, now->rest) || (before->blind && !now->blind) ||
              (before->faint && now->brightest > before->brightest);
     if (d->all) return ZT_OK;
     size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
