@@ -102,11 +102,16 @@ bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_r
     return false;
 }
 
-bool zt_value_pixel(int *column, int *row, const char *text, zt_report *report) {
+/* Two whole numbers up to `most`, and nothing but the mark between them. */
+static bool read_pair(int64_t *one, int64_t *other, const char *text, char mark, int64_t most) {
     const char *rest = text;
+    return zt_value_digits(one, &rest, most) && *rest++ == mark &&
+           zt_value_digits(other, &rest, most) && !*rest;
+}
+
+bool zt_value_pixel(int *column, int *row, const char *text, zt_report *report) {
     int64_t x = 0, y = 0;
-    bool good = zt_value_digits(&x, &rest, ZT_IMAGE_SIDE_MAX - 1) && *rest++ == ',' &&
-                zt_value_digits(&y, &rest, ZT_IMAGE_SIDE_MAX - 1) && !*rest;
+    bool good = read_pair(&x, &y, text, ',', ZT_IMAGE_SIDE_MAX - 1);
     if (!good)
         zt_report_say(
             report, ZT_ERROR,
@@ -141,10 +146,7 @@ bool zt_value_range(int64_t *first, int64_t *last, const char *text) {
 }
 
 bool zt_value_part(int64_t *part, int64_t *count, const char *text, zt_report *report) {
-    const char *rest = text;
-    bool good = zt_value_digits(part, &rest, PARTS_MAX) && *rest++ == '/' &&
-                zt_value_digits(count, &rest, PARTS_MAX) && !*rest && *part >= 1 &&
-                *part <= *count;
+    bool good = read_pair(part, count, text, '/', PARTS_MAX) && *part >= 1 && *part <= *count;
     if (!good)
         zt_report_say(report, ZT_ERROR,
                       "--chunk %s: must be a part and how many there are, such as 3/8; the "
