@@ -10,16 +10,19 @@ static const vec3 white = {1, 1, 1};
 /* Which of them all of the following render in. */
 static zt_precision precision = ZT_PRECISION_AUTO;
 
-/* Renders a scene to an image that the caller frees, with the channels "samples" and "error";
- * *left_out samples were not finite. The random numbers are the sampling's seed's. */
-static inline zt_image *render_sampled(int64_t *left_out, const zt_scene *scene, int width,
-                                       int height, zt_sampling sampling, int threads) {
+/* Renders an exposure to an image that the caller frees, with the channels "samples" and
+ * "error". The random numbers are the sampling's seed's. */
+static inline zt_image *render_exposure(zt_render_count *count, const zt_exposure *exposure,
+                                        int width, int height, zt_sampling sampling,
+                                        int threads) {
+    const zt_scene *scene = exposure->moments;
     zt_arena arena = {0};
     zt_meshes *meshes;
     zt_pool *pool;
     zt_render_work *work;
     zt_image *image;
     zt_ready ready;
+    zt_lens *lens;
     assert_int_equal(
         zt_meshes_open(&meshes, scene->meshes, scene->mesh_count, threads, (zt_listener){0}),
         ZT_OK);
@@ -28,26 +31,32 @@ static inline zt_image *render_sampled(int64_t *left_out, const zt_scene *scene,
     assert_int_equal(zt_image_create(&image, width, height), ZT_OK);
     assert_int_equal(zt_image_add_channel(image, "samples"), ZT_OK);
     assert_int_equal(zt_image_add_channel(image, "error"), ZT_OK);
-    zt_exposure exposure = zt_exposure_of(scene);
-    zt_lens *lens;
-    assert_int_equal(zt_tracer_prepare(&ready, &exposure, precision,
+    assert_int_equal(zt_tracer_prepare(&ready, exposure, precision,
                                        zt_lens_pixel(&scene->camera, height), meshes, &arena),
                      ZT_OK);
-    assert_int_equal(zt_lens_prepare(&lens, &exposure, width, height, &arena), ZT_OK);
-    zt_render_count count;
+    assert_int_equal(zt_lens_prepare(&lens, exposure, width, height, &arena), ZT_OK);
     zt_render_job job = {.scene = &ready,
                          .lens = lens,
                          .sampling = sampling,
                          .place_key = sampling.seed,
                          .frame_key = sampling.seed};
     assert_int_equal(zt_warp_prepare(&job.warp, &sampling, &arena), ZT_OK);
-    assert_int_equal(zt_thin_prepare(&job.thin, &exposure, width, height, &arena), ZT_OK);
-    assert_int_equal(zt_render(image, &count, &job, work, pool), ZT_OK);
-    *left_out = count.left_out;
+    assert_int_equal(zt_thin_prepare(&job.thin, exposure, width, height, &arena), ZT_OK);
+    assert_int_equal(zt_render(image, count, &job, work, pool), ZT_OK);
     zt_render_work_close(work);
     zt_pool_close(&pool);
     zt_meshes_close(&meshes);
     zt_arena_free(&arena);
+    return image;
+}
+
+/* The same of a scene at one moment; *left_out samples were not finite. */
+static inline zt_image *render_sampled(int64_t *left_out, const zt_scene *scene, int width,
+                                       int height, zt_sampling sampling, int threads) {
+    zt_exposure exposure = zt_exposure_of(scene);
+    zt_render_count count;
+    zt_image *image = render_exposure(&count, &exposure, width, height, sampling, threads);
+    *left_out = count.left_out;
     return image;
 }
 

@@ -131,32 +131,8 @@ static void move(test_scene *to, const test_scene *from) {
 
 static zt_image *picture(zt_render_count *count, const zt_exposure *exposure,
                          zt_sampling sampling, bool everything) {
-    zt_arena arena = {0};
-    zt_meshes *meshes;
-    zt_pool *pool;
-    zt_render_work *work;
-    zt_image *image;
-    zt_ready ready;
-    zt_lens *lens;
-    const zt_scene *scene = exposure->moments;
     assert_int_equal(setenv("ZOETROPE_EVERYTHING", everything ? "1" : "0", 1), 0);
-    assert_int_equal(zt_meshes_open(&meshes, NULL, 0, 1, (zt_listener){0}), ZT_OK);
-    assert_int_equal(zt_pool_open(&pool, 2), ZT_OK);
-    assert_int_equal(zt_render_work_push(&work, &arena, 2), ZT_OK);
-    assert_int_equal(zt_image_create(&image, WIDTH, HEIGHT), ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&ready, exposure, precision,
-                                       zt_lens_pixel(&scene->camera, HEIGHT), meshes, &arena),
-                     ZT_OK);
-    assert_int_equal(zt_lens_prepare(&lens, exposure, WIDTH, HEIGHT, &arena), ZT_OK);
-    zt_render_job job = {.scene = &ready, .lens = lens, .sampling = sampling, .place_key = 3};
-    assert_int_equal(zt_warp_prepare(&job.warp, &sampling, &arena), ZT_OK);
-    assert_int_equal(zt_thin_prepare(&job.thin, exposure, WIDTH, HEIGHT, &arena), ZT_OK);
-    assert_int_equal(zt_render(image, count, &job, work, pool), ZT_OK);
-    zt_render_work_close(work);
-    zt_pool_close(&pool);
-    zt_meshes_close(&meshes);
-    zt_arena_free(&arena);
-    return image;
+    return render_exposure(count, exposure, WIDTH, HEIGHT, sampling, 2);
 }
 
 static const zt_sampling samplings[] = {
