@@ -35,14 +35,8 @@ static FILE *begin_film(void) {
             "materials:\n"
             "  mirror: { color: [0.6, 0.55, 0.5], reflectivity: 0.35 }\n"
             "  matte: { color: [0.75, 0.8, 0.95] }\n"
-            "lights:\n"
-            "  - ambient: { intensity: 0.2 }\n"
-            "  - point: { position: [2.5, 5, 4], intensity: 24 }\n"
-            "  - point: { position: [-0.6, 3.6, 5.0], intensity: 7 }\n"
-            "objects:\n"
-            "  - plane: { normal: [0, 1, 0], distance: 0, material: mirror }\n"
-            "  - plane: { normal: [1, 0, 0], distance: -3, material: mirror }\n"
-            "  - plane: { normal: [0, 0, 1], distance: -3, material: matte }\n");
+            "%s",
+            documents_room);
     return file;
 }
 

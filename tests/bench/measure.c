@@ -152,6 +152,16 @@ spent frames_run(void *user) {
     return spent_per(spent_since(start), f->repeats);
 }
 
+const char documents_room[] =
+    "lights:\n"
+    "  - ambient: { intensity: 0.2 }\n"
+    "  - point: { position: [2.5, 5, 4], intensity: 24 }\n"
+    "  - point: { position: [-0.6, 3.6, 5.0], intensity: 7 }\n"
+    "objects:\n"
+    "  - plane: { normal: [0, 1, 0], distance: 0, material: mirror }\n"
+    "  - plane: { normal: [1, 0, 0], distance: -3, material: mirror }\n"
+    "  - plane: { normal: [0, 0, 1], distance: -3, material: matte }\n";
+
 zt_animation *film_open(const char *name, const zt_override *overrides) {
     char path[PATH_SIZE];
     bool own = !strchr(name, '/');

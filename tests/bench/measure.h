@@ -53,6 +53,10 @@ spent frames_run(void *user); /* of one frame; `user` is a `frames` */
  * may be NULL. */
 zt_animation *film_open(const char *name, const zt_override *overrides);
 
+/* The documents' room as text: its lights, and of its objects, which further ones may follow,
+ * the walls, of materials "mirror" and "matte". */
+extern const char documents_room[];
+
 /* A directory that is removed in the end, in memory where the system has one there. The second
  * one gives the path of a file in it; valid for the next few calls. */
 const char *scratch(void);

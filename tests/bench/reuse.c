@@ -71,17 +71,11 @@ static void write_hall(FILE *file) {
 static void write_room(FILE *file) {
     fprintf(
         file,
-        "lights:\n"
-        "  - ambient: { intensity: 0.2 }\n"
-        "  - point: { position: [2.5, 5, 4], intensity: 24 }\n"
-        "  - point: { position: [-0.6, 3.6, 5.0], intensity: 7 }\n"
-        "objects:\n"
-        "  - plane: { normal: [0, 1, 0], distance: 0, material: mirror }\n"
-        "  - plane: { normal: [1, 0, 0], distance: -3, material: mirror }\n"
-        "  - plane: { normal: [0, 0, 1], distance: -3, material: matte }\n"
+        "%s"
         "  - sphere: { center: [1.7, 0.9, 0.3], radius: 0.9, material: ball }\n"
         "  - sphere: { radius: 0.25, material: ball, center: { keys: { 0: [-1.6, 0.4, 0.6], "
-        "400: [0.2, 0.6, 1.4] } } }\n");
+        "400: [0.2, 0.6, 1.4] } } }\n",
+        documents_room);
 }
 
 /* All that there is moves, and the camera stands still. */
