@@ -81,16 +81,16 @@ void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t r
 void zt_canvas_added_all(zt_canvas *canvas);
 
 /* The mean of some samples, R G B A, of which those of `negative` (may be NULL) count
- * negatively; all 0 without any. Where what is left of the count is so little that noise would explode, all count
- * alike. */
+ * negatively; all 0 without any. Where what is left of the count is so little that noise would
+ * explode, all count alike. */
 void zt_canvas_mean(double mean[4], const zt_canvas_sum *positive,
                     const zt_canvas_sum *negative);
 
 /* The squared standard error of the mean of all samples of two independent sets, on average of
- * red, green and blue, with that of alpha, which is one of each over white: from the difference of their means; but no less than what the points of
- * samples, which are well spread, leave of a step's variance: a share of n^(-3/2) for n
- * samples. Halves that are both well spread often agree on a step through the pixel, and both
- * be wrong. */
+ * red, green and blue, with that of alpha, which is one of each over white: from the difference
+ * of their means; but no less than what the points of samples, which are well spread, leave of
+ * a step's variance: a share of n^(-3/2) for n samples. Halves that are both well spread often
+ * agree on a step through the pixel, and both be wrong. */
 float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum negative[2]);
 
 /* The squared error of a pixel, averaged with its neighbours as far as there are estimates, so
