@@ -206,8 +206,8 @@ static bool render_tile(zt_frame *f, int index, int worker) {
                  min_int(TILE_SIDE, f->image->height - y)};
     int most = f->at_edges ? ZT_BATCH : block_size(f->job->sampling.max);
     zt_render_thread *own = &f->work->threads[worker];
-    if (f->copies && !f->job->reuse->touched[index]) {
-        zt_reuse_copy(f, x, y, area.width, area.height);
+    if (f->copies && f->job->reuse->from[index] != ZT_TILE_RENDERED) {
+        zt_reuse_copy(f, index, x, y, area.width, area.height);
         return true;
     }
     if (f->keeps)
@@ -217,6 +217,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
     for (int first = 0; first < ZT_BATCH && done; first += most) {
         int64_t left_out = own->count.left_out;
         if (f->keeps) own->rays.footprint = zt_reuse_footprint(f->job->reuse, index, first);
+        if (f->keeps) own->rays.outline = &f->job->reuse->last.outline;
         done = render_block(f, own, area, first, most);
         /* What is left out is told in each frame. */
         if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
@@ -293,20 +294,20 @@ static zt_status render_all(zt_frame *f) {
 
 zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job *job,
                     zt_render_work *work, zt_pool *pool) {
-    int columns = (image->width + TILE_SIDE - 1) / TILE_SIDE;
-    int rows = (image->height + TILE_SIDE - 1) / TILE_SIDE;
+    int tile_count = zt_tile_count(image->width, image->height);
     int thread_count = zt_pool_thread_count(pool);
     image->transparent = job->transparent;
     zt_frame f = {.image = image,
                   .job = job,
                   .work = work,
                   .pool = pool,
-                  .tile_columns = columns,
-                  .tile_count = columns * rows,
-                  .run = run_length(columns * rows, thread_count)};
+                  .tile_columns = zt_tile_columns(image->width),
+                  .tile_count = tile_count,
+                  .run = run_length(tile_count, thread_count)};
     for (int i = 0; i < thread_count; i++) work->threads[i].count = (zt_render_count){0};
     zt_status status = render_all(&f);
-    *count = (zt_render_count){.tiles = f.tile_count, .tiles_copied = f.tiles_copied};
+    *count = (zt_render_count){
+        .tiles = f.tile_count, .tiles_copied = f.tiles_copied, .tiles_kept = f.tiles_kept};
     for (int i = 0; i < thread_count; i++) {
         const zt_render_count *own = &work->threads[i].count;
         count->left_out += own->left_out;

@@ -59,7 +59,8 @@ typedef struct zt_render_count {
     int64_t left_out; /* samples that were not finite */
     int64_t samples;
     zt_ray_counts rays;
-    int64_t tiles, tiles_copied;
+    int64_t tiles, tiles_copied; /* of which tiles_kept from one that was kept */
+    int64_t tiles_kept;
 } zt_render_count;
 
 /* Renders into all of `image`, and into its further channels. The same bits for any number of

@@ -6,7 +6,8 @@
  * what its rays meet. While the camera stands still all numbers are relative to the same place,
  * so that what did not change is the same numbers. What each block of a tile's rays touched is
  * kept as a footprint (tracer/footprint.h), from the frame that was rendered last, and asked
- * about all that differs in the next one; what concerns all rays at once (the precision, the
+ * about all that differs in the next one; likewise from one of an earlier run, where the caller
+ * has it; what concerns all rays at once (the precision, the
  * depth of mirrors, whether things lie on each other) is compared as a whole. Random numbers
  * other than places are keyed by all that the frame holds, so that they change with it: tiles
  * that see lamps with a size, and what moves while the shutter is open, are not copied then,
@@ -27,20 +28,37 @@
 /* What of a tile has a footprint of its own: a quarter, or all of it. */
 enum { ZT_REUSE_PARTS = 4 };
 
+/* A frame as it was rendered, with what its rays touched: all that tiles are copied from. */
+typedef struct zt_picture {
+    zt_hash view;       /* its rays; */
+    uint64_t frame_key; /* and its random numbers */
+    bool whole;         /* the pixels and footprints of all tiles are there, and belong to it */
+    int width, height;
+    float *pixels;            /* R G B A */
+    zt_footprint *footprints; /* ZT_REUSE_PARTS for each tile */
+    zt_outline outline;
+    zt_arena arena; /* the outline's */
+} zt_picture;
+
+/* Has it hold pictures of a size; nothing of the one before stays where that is another one. */
+zt_status zt_picture_open(zt_picture *picture, int width, int height);
+void zt_picture_close(zt_picture *picture); /* leaves zeros */
+
+/* Where a tile comes from. */
+typedef enum zt_tile_source {
+    ZT_TILE_RENDERED,
+    ZT_TILE_LAST, /* copied from the frame that was rendered last; */
+    ZT_TILE_KEPT  /* from the one that was kept */
+} zt_tile_source;
+
 struct zt_reuse {
     bool tireless;
-    /* Of the last frame that was rendered: its pictures' rays, and the random numbers. */
-    zt_hash view;
-    uint64_t frame_key;
-    bool whole; /* the pixels and footprints of all tiles are there, and belong to it */
-    int width, height;
-    float *pixels;
-    zt_footprint *footprints; /* ZT_REUSE_PARTS for each tile */
-    bool *touched;            /* each tile, by what differs now */
-    zt_arena arenas[2];
-    zt_outline outlines[2];
-    int last;            /* which of the two is its */
-    int fruitless, rest; /* how often too little came of it; and how many frames it rests yet */
+    bool keeps;             /* somebody wants `last` to be whole after each frame */
+    zt_picture last;        /* the frame that was rendered last */
+    const zt_picture *kept; /* may be like the next one as well; NULL: none */
+    uint8_t *from;          /* a zt_tile_source for each tile */
+    zt_arena spare;         /* the next outline's */
+    int fruitless, rest;    /* how often too little came of it; how many frames it rests yet */
 };
 
 /* Before an even picture's tiles: says for each of them whether it is copied, and whether what
@@ -50,12 +68,12 @@ zt_status zt_reuse_begin(zt_frame *frame);
 /* After them, `done` or stopped. */
 void zt_reuse_end(zt_frame *frame, bool done);
 
-/* Copies a tile, into the image or from there. */
-void zt_reuse_copy(zt_frame *frame, int left, int top, int width, int height);
+/* Copies a tile into the image, from where it comes; or from there. */
+void zt_reuse_copy(zt_frame *frame, int tile, int left, int top, int width, int height);
 void zt_reuse_keep(zt_frame *frame, int left, int top, int width, int height);
 
 static inline zt_footprint *zt_reuse_footprint(const zt_reuse *r, int tile, int first) {
-    return &r->footprints[tile * ZT_REUSE_PARTS + first / (ZT_BATCH / ZT_REUSE_PARTS)];
+    return &r->last.footprints[tile * ZT_REUSE_PARTS + first / (ZT_BATCH / ZT_REUSE_PARTS)];
 }
 
 #endif

@@ -45,9 +45,14 @@ typedef struct zt_frame {
     bool at_edges; /* first one sample in the middle of each pixel, then more at edges alone */
     /* Of the job's reuse: it takes down what is rendered; could copy; does so. */
     bool keeps, tries, copies;
-    int64_t tiles_copied;
+    int64_t tiles_copied, tiles_kept; /* the latter are among the former */
     atomic_bool stopped;
 } zt_frame;
+
+static inline int zt_tile_columns(int width) { return (width + TILE_SIDE - 1) / TILE_SIDE; }
+static inline int zt_tile_count(int width, int height) {
+    return zt_tile_columns(width) * zt_tile_columns(height);
+}
 
 static inline int min_int(int a, int b) { return a < b ? a : b; }
 static inline int max_int(int a, int b) { return a > b ? a : b; }

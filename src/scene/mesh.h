@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include <zoetrope/hash.h>
+
 #include "base/vec.h"
 
 /* Owns nothing: the arrays belong to the arena that the reader was given. */
@@ -32,5 +34,8 @@ static inline vec3 zt_mesh_corner(const zt_mesh *mesh, int32_t triangle, int cor
  * plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983; Jacobson, Kavan and Sorkine-Hornung,
  * "Robust inside-outside segmentation using generalized winding numbers", 2013). */
 double zt_mesh_winding(const zt_mesh *mesh, vec3 point);
+
+/* A hash of all that it holds. */
+zt_hash zt_mesh_content(const zt_mesh *mesh);
 
 #endif

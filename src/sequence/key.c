@@ -4,7 +4,6 @@
 #include <zoetrope/aov.h>
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/diag.h"
 #include "base/hash.h"
@@ -14,30 +13,14 @@
 
 const char zt_arithmetic[] = "zoetrope 1";
 
-static zt_hash hash_of(const void *bytes, size_t size) {
-    return bytes && size ? zt_hash_bytes(bytes, size) : (zt_hash){0};
-}
-
-/* Numbers of which it consists, side by side, without bytes between them. */
-static zt_hash mesh_hash(const zt_mesh *m) {
-    const size_t points = (size_t)m->vertex_count * 3, corners = (size_t)m->triangle_count * 3;
-    const double numbers[] = {m->origin.x, m->origin.y, m->origin.z, m->vertex_count,
-                              m->triangle_count};
-    const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
-                             hash_of(m->positions, points * sizeof *m->positions),
-                             hash_of(m->triangles, corners * sizeof *m->triangles),
-                             hash_of(m->normals, points * sizeof *m->normals),
-                             hash_of(m->colors, points * sizeof *m->colors)};
-    return zt_hash_bytes(parts, sizeof parts);
-}
-
 /* Of all meshes, once: they are the film's, and never change. */
 static zt_status find_held(zt_renderer *r) {
     if (zt_hash_is_known(r->held)) return ZT_OK;
     const zt_scene *rest = &r->animation->rest;
     zt_hash *hashes = calloc((size_t)rest->mesh_count + 1, sizeof *hashes);
     if (!hashes) return ZT_EMEMORY;
-    for (int32_t i = 0; i < rest->mesh_count; i++) hashes[i] = mesh_hash(&rest->meshes[i]);
+    for (int32_t i = 0; i < rest->mesh_count; i++)
+        hashes[i] = zt_mesh_content(&rest->meshes[i]);
     r->held = zt_hash_bytes(hashes, ((size_t)rest->mesh_count + 1) * sizeof *hashes);
     free(hashes);
     return ZT_OK;

@@ -143,7 +143,8 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
         if (tracer->everything) w->points.source = -1;
         around = origins_of(w, tracer);
         if (given->footprint)
-            zt_tread_points(given->footprint, depth, &w->points, &around, tracer);
+            zt_tread_points(given->footprint, depth, &w->points, &around, tracer,
+                            given->outline);
         light_points(w, &light->counts, tracer, &around, given, depth);
         deliver(light, w);
         if (given->wants_path) deliver_paths(light, w);

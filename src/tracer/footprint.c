@@ -2,7 +2,9 @@
 
 #include <math.h>
 
+#include "base/diag.h"
 #include "tracer/bundle.h"
+#include "tracer/pairing.h"
 
 /* Where more things moved than this, those that follow each other in the scene share a box. */
 enum { PLACES_MAX = 32 };
@@ -39,12 +41,12 @@ static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now
 }
 
 /* One of the two may be NULL, where a thing comes or goes. */
-static void add_thing(zt_differences *d, int32_t object, const zt_outline_thing *before,
+static void add_thing(zt_differences *d, const zt_outline_thing *before,
                       const zt_outline_thing *now, bool same_numbers) {
     bool drawn = !same_numbers && ((before && before->moves) || (now && now->moves));
     bool moved = !before || !now || !zt_hash_equal(before->shape, now->shape) || drawn;
     if (!moved && zt_hash_equal(before->looks, now->looks)) return;
-    d->objects |= zt_footprint_bit(object);
+    if (before) d->things |= zt_footprint_bit(before->shape);
     if (!moved) return;
     if (before) add_place(d, before, false);
     if (now) add_place(d, now, true);
@@ -53,16 +55,18 @@ static void add_thing(zt_differences *d, int32_t object, const zt_outline_thing 
     d->places[d->place_count - 1] = (zt_difference){around(&before->box, &now->box), true};
 }
 
-static void add_things(zt_differences *d, const zt_outline *before, const zt_outline *now,
-                       bool same_numbers) {
-    int32_t i = 0, k = 0;
-    while (i < before->thing_count || k < now->thing_count) {
-        int32_t was = i < before->thing_count ? before->things[i].object : INT32_MAX;
-        int32_t is = k < now->thing_count ? now->things[k].object : INT32_MAX;
-        const zt_outline_thing *a = was <= is ? &before->things[i++] : NULL;
-        const zt_outline_thing *b = is <= was ? &now->things[k++] : NULL;
-        add_thing(d, was < is ? was : is, a, b, same_numbers);
+static zt_status add_things(zt_differences *d, const zt_outline *before, const zt_outline *now,
+                            bool same_numbers, zt_arena *arena) {
+    const zt_outline_thing *was = before->things, *is = now->things;
+    zt_pairing p = {.before = {&was->shape, sizeof *was, before->thing_count},
+                    .now = {&is->shape, sizeof *is, now->thing_count}};
+    int32_t i, k;
+    ZT_TRY(zt_pairing_begin(&p, arena));
+    while (zt_pairing_next(&i, &k, &p)) {
+        add_thing(d, i < 0 ? NULL : &was[i], k < 0 ? NULL : &is[k], same_numbers);
+        d->shifted |= i != k;
     }
+    return ZT_OK;
 }
 
 static void share_boxes(zt_differences *d) {
@@ -81,17 +85,29 @@ static void share_boxes(zt_differences *d) {
     d->place_count = kept;
 }
 
-static void add_lamps(zt_differences *d, const zt_outline *before, const zt_outline *now,
-                      bool same_numbers) {
-    for (int32_t i = 0; i < now->lamp_count; i++) {
-        const zt_outline_lamp *a = &before->lamps[i], *b = &now->lamps[i];
-        uint64_t bit = zt_footprint_bit(b->light);
-        d->light |= !zt_hash_equal(a->place, b->place);
-        if (!same_numbers && (a->drawn || b->drawn)) d->drawn_lamps |= bit;
-        if (!zt_hash_equal(a->power, b->power)) d->dimmed_lamps |= bit;
-    }
+/* One of the two may be NULL. Light that is missing is added as nothing, so that a lamp which
+ * goes is one that is dimmed; who sees one that comes, or moves, nobody knows. */
+static void add_lamp(zt_differences *d, const zt_outline_lamp *before,
+                     const zt_outline_lamp *now, bool same_numbers) {
+    if (now && !(before && zt_hash_equal(before->place, now->place))) d->light = true;
+    if (!before || d->light) return;
+    uint64_t bit = zt_footprint_bit(before->place);
+    if (!same_numbers && before->drawn) d->drawn_lamps |= bit;
+    if (!now || !zt_hash_equal(before->power, now->power)) d->dimmed_lamps |= bit;
+}
+
+static zt_status add_lamps(zt_differences *d, const zt_outline *before, const zt_outline *now,
+                           bool same_numbers, zt_arena *arena) {
+    const zt_outline_lamp *was = before->lamps, *is = now->lamps;
+    zt_pairing p = {.before = {&was->place, sizeof *was, before->lamp_count},
+                    .now = {&is->place, sizeof *is, now->lamp_count}};
+    int32_t i, k;
+    ZT_TRY(zt_pairing_begin(&p, arena));
+    while (zt_pairing_next(&i, &k, &p))
+        add_lamp(d, i < 0 ? NULL : &was[i], k < 0 ? NULL : &is[k], same_numbers);
     d->light |= !zt_hash_equal(before->ambient, now->ambient) ||
                 (!same_numbers && (before->ambient_moves || now->ambient_moves));
+    return ZT_OK;
 }
 
 zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
@@ -104,10 +120,9 @@ zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
     size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
     d->places = ZT_PUSH(arena, zt_difference, most);
     if (!d->places) return ZT_EMEMORY;
-    add_things(d, before, now, same_numbers);
+    ZT_TRY(add_things(d, before, now, same_numbers, arena));
     share_boxes(d);
-    add_lamps(d, before, now, same_numbers);
-    return ZT_OK;
+    return add_lamps(d, before, now, same_numbers, arena);
 }
 
 /* ---- what that touches ----------------------------------------------------------------------
@@ -167,7 +182,7 @@ static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const z
                          const zt_bvh_box *place, float stretch) {
     for (int32_t i = 0; i < now->lamp_count; i++) {
         const zt_outline_lamp *lamp = &now->lamps[i];
-        if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->light)) &&
+        if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->place)) &&
             passes(&step->points, &lamp->bounds, place, stretch))
             return true;
     }
@@ -186,7 +201,7 @@ static bool place_touches(const zt_footprint *f, const zt_differences *d,
 
 bool zt_footprint_touched(const zt_footprint *f, const zt_differences *d) {
     if (d->all || f->restless || (d->light && f->steps[0].ends)) return true;
-    if ((d->objects & f->met) || (d->drawn_lamps & f->faced) || (d->dimmed_lamps & f->lit))
+    if ((d->things & f->met) || (d->drawn_lamps & f->faced) || (d->dimmed_lamps & f->lit))
         return true;
     if (f->doubtful && d->place_count > 0) return true;
     for (int32_t i = 0; i < d->place_count; i++)

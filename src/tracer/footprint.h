@@ -39,26 +39,23 @@ typedef struct zt_footstep {
 /* The last step holds all mirrors that follow as well. */
 enum { ZT_FOOTPRINT_STEPS = 4 };
 
-/* Zeroed: of no rays. Sets of things and lamps have a bit for each number modulo 64 of
- * zt_footprint_bit(). */
+/* Zeroed: of no rays. Sets of things have the bits of their shapes, those of lamps that of
+ * their places: so a thing that stays what it is keeps its bit, whatever comes before it. */
 typedef struct zt_footprint {
     zt_footstep steps[ZT_FOOTPRINT_STEPS];
-    uint64_t met;        /* objects that rays ended on */
-    uint64_t faced, lit; /* lights that such points face; and that reach some of them */
+    uint64_t met;        /* things that rays ended on */
+    uint64_t faced, lit; /* lamps that such points face; and that reach some of them */
     bool doubtful;       /* what was met may depend on in which order things were asked */
     bool restless;       /* nothing is known: it counts as touched by anything */
 } zt_footprint;
 
-static inline uint64_t zt_footprint_bit(int32_t number) {
-    return UINT64_C(1) << ((uint32_t)number * 0x9e3779b1u >> 26);
-}
+static inline uint64_t zt_footprint_bit(zt_hash of) { return UINT64_C(1) << (of.low >> 58); }
 
 /* ---- of scenes ------------------------------------------------------------------------------
  */
 
 /* One thing as rays can tell it: equal hashes, equal hits and looks. */
 typedef struct zt_outline_thing {
-    int32_t object;
     bool moves; /* while the shutter is open: what rays tell depends on their times */
     bool unbounded;
     zt_bvh_box box;
@@ -67,17 +64,17 @@ typedef struct zt_outline_thing {
 } zt_outline_thing;
 
 typedef struct zt_outline_lamp {
-    int32_t light;
     bool drawn; /* what rays tell depends on random numbers */
     bool shadows;
     zt_bvh_box bounds;
     zt_hash place, power;
 } zt_outline_lamp;
 
-/* A tracer, told in numbers that do not depend on its precision. Lives in an arena. */
+/* A tracer, told in numbers that depend neither on its precision nor on the run. Lives in an
+ * arena. */
 typedef struct zt_outline {
-    zt_outline_thing *things; /* in the order of their objects */
-    zt_outline_lamp *lamps;
+    zt_outline_thing *things; /* one for each primitive, */
+    zt_outline_lamp *lamps;   /* and for each lamp, in order */
     int32_t thing_count, lamp_count;
     zt_hash ambient, rest; /* rest: all that concerns all rays */
     bool ambient_moves;
@@ -98,11 +95,14 @@ typedef struct zt_difference {
     bool now; /* or only before */
 } zt_difference;
 
-/* What differs between two outlines, the second of which must be there as long. */
+/* What differs between two outlines, the second of which must be there as long. Things and
+ * lamps that came or went in between, or stand elsewhere in the order, are told apart from
+ * those that are the same: these are asked in the same order as before. */
 typedef struct zt_differences {
-    bool all;         /* nothing can be said of anything */
-    bool light;       /* what light there is at any point */
-    uint64_t objects; /* that moved, or look otherwise */
+    bool all;        /* nothing can be said of anything */
+    bool light;      /* what light there is at any point */
+    bool shifted;    /* things have other numbers */
+    uint64_t things; /* that went, moved, or look otherwise */
     uint64_t drawn_lamps, dimmed_lamps;
     zt_difference *places;
     int32_t place_count;

@@ -38,14 +38,15 @@ static inline void zt_tread_rays(zt_footprint *f, int32_t depth, const zt_bundle
 
 /* The points where rays ended; of smooth meshes they are lifted off their ends. */
 static inline void zt_tread_points(zt_footprint *f, int32_t depth, const zt_points *points,
-                                   const zt_box *around, const zt_tracer *tracer) {
+                                   const zt_box *around, const zt_tracer *tracer,
+                                   const zt_outline *outline) {
     zt_footstep *step = zt_step_after(f, depth);
     zt_hold_box(&step->points, around, !step->ends);
     step->ends = true;
     int count = points->source >= 0 ? 1 : points->count;
     for (int k = 0; k < count; k++) {
         const zt_primitive *p = &tracer->primitives[points->primitive[k]];
-        f->met |= zt_footprint_bit(p->object);
+        f->met |= zt_footprint_bit(outline->things[points->primitive[k]].shape);
         step->leaves |= p->kind == ZT_PRIMITIVE_MESH && tracer->placed[p->placed].smooth;
     }
 }
@@ -53,8 +54,9 @@ static inline void zt_tread_points(zt_footprint *f, int32_t depth, const zt_poin
 /* A lamp that was asked at the points: which of them face it, and to which of those nothing
  * hides it. Where it was asked from is a random number's to say for those with a size, so that
  * other points may face it the next time. */
-static inline void zt_tread_lamp(zt_footprint *f, const zt_lamp *lamp, const zt_points *p,
-                                 const zt_batch *shadow, const int32_t *wanted, bool hidden) {
+static inline void zt_tread_lamp(zt_footprint *f, const zt_lamp *lamp, zt_hash place,
+                                 const zt_points *p, const zt_batch *shadow,
+                                 const int32_t *wanted, bool hidden) {
     const zt_origins *from = shadow->from;
     const real3 at = lamp->poses->position;
     int32_t faced = 1, lit = 1;
@@ -68,8 +70,8 @@ static inline void zt_tread_lamp(zt_footprint *f, const zt_lamp *lamp, const zt_
             lit |= faces & open;
         }
     }
-    f->faced |= faced ? zt_footprint_bit(lamp->light) : 0;
-    f->lit |= lit ? zt_footprint_bit(lamp->light) : 0;
+    f->faced |= faced ? zt_footprint_bit(place) : 0;
+    f->lit |= lit ? zt_footprint_bit(place) : 0;
 }
 
 #endif

@@ -36,8 +36,10 @@ typedef struct zt_rays {
     int count;
     /* Which of zt_radiance are asked for besides the light. */
     bool wants_path, wants_cover;
-    /* Grows by what the rays touch; NULL: nobody asks. */
+    /* Grows by what the rays touch of this outline, which is the tracer's; NULL: nobody asks.
+     */
     struct zt_footprint *footprint;
+    const struct zt_outline *outline;
 } zt_rays;
 
 /* How many rays of each kind were traced; and how many were not, of all that there are where

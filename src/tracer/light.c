@@ -159,7 +159,8 @@ static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt
         if (given->wants_path) note_hidden(w, index);
     }
     if (given->footprint)
-        zt_tread_lamp(given->footprint, lamp, &w->points, &w->shadow, w->wanted, hidden);
+        zt_tread_lamp(given->footprint, lamp, given->outline->lamps[index].place, &w->points,
+                      &w->shadow, w->wanted, hidden);
     return wanted;
 }
 
@@ -167,8 +168,10 @@ static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt
 static zt_reach_points bound_points(const zt_work *w, const zt_box *around,
                                     const zt_rays *given) {
     const zt_points *p = &w->points;
-    zt_reach_points bounds = {
-        .places = *around, .wants_path = given->wants_path, .footprint = given->footprint};
+    zt_reach_points bounds = {.places = *around,
+                              .wants_path = given->wants_path,
+                              .footprint = given->footprint,
+                              .outline = given->outline};
     bounds.normals = zt_range3(p->nx, p->ny, p->nz, p->count);
     if (given->wants_path)
         bounds.least_color = zt_range3(p->color_r, p->color_g, p->color_b, p->count).low;

@@ -74,6 +74,7 @@ static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
 zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t index) {
     zt_built_mesh *b = &m->built[index];
     *built = b;
+    if (!zt_hash_is_known(b->content)) b->content = zt_mesh_content(b->mesh);
     if (!b->hull) ZT_TRY(build_hull(b));
     return b->bvh ? ZT_OK : build_bvh(b, m->builder);
 }

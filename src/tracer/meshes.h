@@ -25,6 +25,7 @@ void zt_meshes_close(zt_meshes **meshes);
  * their boxes, and the hull. */
 typedef struct zt_built_mesh {
     const zt_mesh *mesh;
+    zt_hash content; /* of the mesh */
     zt_clusters clusters;
     zt_bvh *bvh;
     zt_hull *hull;

@@ -84,9 +84,7 @@ static zt_hash shape_of(const zt_tracer *tracer, int32_t index) {
     if (mesh) {
         put_mesh(&n, mesh);
         zt_hash hash = hash_with(&n, mesh->places, moments * sizeof *mesh->places);
-        /* The same place in the run's memory, the same mesh. */
-        const uint64_t parts[] = {hash.high, hash.low, (uint64_t)(uintptr_t)mesh->built};
-        return zt_hash_bytes(parts, sizeof parts);
+        return joined(hash, mesh->built->content);
     }
     put3(&n, p->box.low);
     put3(&n, p->box.high);
@@ -134,8 +132,7 @@ static zt_outline_thing thing_of(const zt_tracer *tracer, int32_t index, zt_hash
     bool mesh_moves = p->kind == ZT_PRIMITIVE_MESH && tracer->placed[p->placed].places;
     bool moves = p->poses || mesh_moves || (tracer->changes && tracer->changes[index].looks);
     zt_hash shape = shape_of(tracer, index);
-    return (zt_outline_thing){.object = p->object,
-                              .moves = moves,
+    return (zt_outline_thing){.moves = moves,
                               .unbounded = p->kind == ZT_PRIMITIVE_PLANE,
                               .box = zt_outwards(&p->box),
                               .stretch = (float)p->stretch,
@@ -143,9 +140,12 @@ static zt_outline_thing thing_of(const zt_tracer *tracer, int32_t index, zt_hash
                               .looks = looks_of(tracer, index)};
 }
 
-static zt_outline_lamp lamp_of(const zt_tracer *tracer, const zt_lamp *lamp, zt_hash times) {
+static zt_outline_lamp lamp_of(const zt_tracer *tracer, int32_t index, zt_hash times) {
+    const zt_lamp *lamp = &tracer->lamps[index];
     const int32_t moments = lamp->moves ? tracer->exposure->moment_count : 1;
     zt_hash place = lamp->moves ? times : (zt_hash){0, 0}, power = place;
+    if (lamp->has_size) /* which random numbers are its own */
+        place = joined(place, (zt_hash){(uint64_t)index, (uint64_t)tracer->lamp_count});
     for (int32_t i = 0; i < moments; i++) {
         const zt_lamp_pose *pose = &lamp->poses[i];
         numbers n;
@@ -163,8 +163,7 @@ static zt_outline_lamp lamp_of(const zt_tracer *tracer, const zt_lamp *lamp, zt_
         put3(&n, pose->power);
         power = joined(power, hash_of(&n));
     }
-    return (zt_outline_lamp){.light = lamp->light,
-                             .drawn = lamp->has_size || lamp->moves,
+    return (zt_outline_lamp){.drawn = lamp->has_size || lamp->moves,
                              .shadows = lamp->shadows,
                              .bounds = zt_outwards(&lamp->bounds),
                              .place = place,
@@ -180,11 +179,7 @@ static zt_hash rest_of(const zt_tracer *tracer) {
     put(&n, (double)tracer->tie);
     put(&n, scene->reflection_depth);
     put(&n, tracer->crowd != NULL);
-    put(&n, tracer->lamp_count);
-    zt_hash rest = hash_of(&n);
-    for (int32_t i = 0; i < tracer->lamp_count; i++)
-        rest = joined(rest, (zt_hash){0, (uint64_t)tracer->lamps[i].light});
-    return rest;
+    return hash_of(&n);
 }
 
 static zt_hash ambient_of(const zt_tracer *tracer, zt_hash times) {
@@ -220,8 +215,7 @@ zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
     o.lamps = ZT_PUSH(arena, zt_outline_lamp, (size_t)o.lamp_count);
     if (!o.things || !o.lamps) return ZT_EMEMORY;
     for (int32_t i = 0; i < o.thing_count; i++) o.things[i] = thing_of(tracer, i, times);
-    for (int32_t i = 0; i < o.lamp_count; i++)
-        o.lamps[i] = lamp_of(tracer, &tracer->lamps[i], times);
+    for (int32_t i = 0; i < o.lamp_count; i++) o.lamps[i] = lamp_of(tracer, i, times);
     *outline = o;
     return ZT_OK;
 }

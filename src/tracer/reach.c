@@ -122,7 +122,7 @@ static void keep_shining(lamps *l, const zt_reach_points *points, const zt_trace
         if (tracer->reach->shines[number]) {
             move_lamp(l, kept++, i);
         } else if (points->footprint) {
-            uint64_t bit = zt_footprint_bit(tracer->lamps[number].light);
+            uint64_t bit = zt_footprint_bit(points->outline->lamps[number].place);
             points->footprint->faced |= bit;
             points->footprint->lit |= bit;
         }
@@ -131,8 +131,7 @@ static void keep_shining(lamps *l, const zt_reach_points *points, const zt_trace
 }
 
 /* Keeps the lamps that are not hidden. */
-static void keep_open(lamps *l, uint32_t *hidden, const zt_reach_points *points,
-                      const zt_tracer *tracer) {
+static void keep_open(lamps *l, uint32_t *hidden, const zt_reach_points *points) {
     int kept = 0;
     for (int i = 0; i < l->count; i++) {
         if (l->left[i]) {
@@ -141,7 +140,8 @@ static void keep_open(lamps *l, uint32_t *hidden, const zt_reach_points *points,
         }
         *hidden ^= zt_lamp_mark(l->number[i]);
         if (points->footprint)
-            points->footprint->faced |= zt_footprint_bit(tracer->lamps[l->number[i]].light);
+            points->footprint->faced |=
+                zt_footprint_bit(points->outline->lamps[l->number[i]].place);
     }
     l->count = kept;
 }
@@ -319,7 +319,7 @@ static void block_all(lamps *l, uint32_t *hidden, zt_reach_memory *memory,
         if (!first) memory->next = (uint32_t)b + 1;
         if (!block(l, &tracer->primitives[reach->blockers[b]], points) || !any_gone(l))
             continue;
-        keep_open(l, hidden, points, tracer);
+        keep_open(l, hidden, points);
         still |= 1u << b;
     }
     memory->useful = still;

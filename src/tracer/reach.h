@@ -27,6 +27,7 @@ typedef struct zt_reach_points {
     real3 least_color; /* of all points */
     bool wants_path;
     zt_footprint *footprint; /* grows by the lamps that are left out; may be NULL */
+    const zt_outline *outline;
 } zt_reach_points;
 
 /* Of lamps first … first + ZT_BATCH - 1, in order, those that may shine on the points: their
