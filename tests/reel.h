@@ -20,7 +20,8 @@ typedef struct reel {
     zt_image *image, *alone;
     zt_precision precision;
     zt_sampling sampling;
-    int64_t shown, copied; /* tiles */
+    int64_t shown, copied; /* tiles; */
+    int64_t kept;          /* among the copied, from what was kept */
     int64_t left_out;      /* samples of the last frame */
 } reel;
 
@@ -107,6 +108,7 @@ static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     r->left_out = count.left_out;
     r->shown += count.tiles;
     r->copied += count.tiles_copied;
+    r->kept += count.tiles_kept;
     return count.tiles_copied;
 }
 

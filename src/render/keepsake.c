@@ -1,0 +1,208 @@
+#include "render/keepsake.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+
+static_assert(sizeof(zt_keepsake_head) == 120, "there are no bytes between fields");
+
+enum { CHECKED = offsetof(zt_keepsake_head, checksum) + sizeof(zt_hash) };
+
+/* Changes whenever bytes, or what footprints and outlines say, become others. */
+static zt_hash version_of(const char *arithmetic) {
+    const uint64_t numbers[] = {1,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
+                                ZT_BATCH, sizeof(zt_footprint), sizeof(zt_outline)};
+    const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
+                             zt_hash_bytes(arithmetic, strlen(arithmetic))};
+    return zt_hash_bytes(parts, sizeof parts);
+}
+
+/* ---- both ways ------------------------------------------------------------------------------
+ * Each kind of thing has one function that says what it consists of; it is written or read. */
+
+typedef struct stream {
+    unsigned char *to;         /* NULL: it is read, */
+    const unsigned char *from; /* from here */
+    size_t left;               /* of what is read */
+    bool lacking;              /* there was too little */
+} stream;
+
+static void pass(stream *s, void *bytes, size_t size) {
+    if (s->to) {
+        memcpy(s->to, bytes, size);
+        s->to += size;
+    } else if (size <= s->left) {
+        memcpy(bytes, s->from, size);
+        s->from += size;
+        s->left -= size;
+    } else {
+        s->lacking = true;
+    }
+}
+
+/* Truths are bits of a number. */
+static void pass_flags(stream *s, bool *const *flags, int count) {
+    uint32_t bits = 0;
+    for (int i = 0; s->to && i < count; i++) bits |= (uint32_t)*flags[i] << i;
+    pass(s, &bits, sizeof bits);
+    for (int i = 0; !s->to && i < count; i++) *flags[i] = bits >> i & 1;
+}
+#define PASS_FLAGS(s, ...)                                                                     \
+    pass_flags(s, (bool *const[]){__VA_ARGS__},                                                \
+               (int)(sizeof((bool *const[]){__VA_ARGS__}) / sizeof(bool *)))
+
+static void pass_step(stream *s, zt_footstep *step) {
+    pass(s, &step->origins, sizeof step->origins);
+    pass(s, &step->directions, sizeof step->directions);
+    if (step->ends) pass(s, &step->points, sizeof step->points);
+}
+
+static void pass_footprint(stream *s, zt_footprint *f) {
+    bool *flags[2 + 3 * ZT_FOOTPRINT_STEPS] = {&f->doubtful, &f->restless};
+    for (int i = 0; i < ZT_FOOTPRINT_STEPS; i++) {
+        flags[2 + 3 * i] = &f->steps[i].there;
+        flags[3 + 3 * i] = &f->steps[i].ends;
+        flags[4 + 3 * i] = &f->steps[i].leaves;
+    }
+    pass_flags(s, flags, 2 + 3 * ZT_FOOTPRINT_STEPS);
+    pass(s, &f->met, sizeof f->met);
+    pass(s, &f->faced, sizeof f->faced);
+    pass(s, &f->lit, sizeof f->lit);
+    for (int i = 0; i < ZT_FOOTPRINT_STEPS; i++)
+        if (f->steps[i].there) pass_step(s, &f->steps[i]);
+}
+
+static void pass_thing(stream *s, zt_outline_thing *t) {
+    PASS_FLAGS(s, &t->moves, &t->unbounded);
+    pass(s, &t->box, sizeof t->box);
+    pass(s, &t->stretch, sizeof t->stretch);
+    pass(s, &t->shape, sizeof t->shape);
+    pass(s, &t->looks, sizeof t->looks);
+}
+
+static void pass_lamp(stream *s, zt_outline_lamp *l) {
+    PASS_FLAGS(s, &l->drawn, &l->shadows);
+    pass(s, &l->bounds, sizeof l->bounds);
+    pass(s, &l->place, sizeof l->place);
+    pass(s, &l->power, sizeof l->power);
+}
+
+static void pass_outline(stream *s, zt_outline *o) {
+    PASS_FLAGS(s, &o->ambient_moves, &o->blind, &o->faint);
+    pass(s, &o->ambient, sizeof o->ambient);
+    pass(s, &o->rest, sizeof o->rest);
+    pass(s, &o->brightest, sizeof o->brightest);
+    for (int32_t i = 0; i < o->thing_count; i++) pass_thing(s, &o->things[i]);
+    for (int32_t i = 0; i < o->lamp_count; i++) pass_lamp(s, &o->lamps[i]);
+}
+
+static size_t pixel_count(const zt_picture *p) { return (size_t)p->width * (size_t)p->height; }
+
+static size_t footprint_count(const zt_picture *p) {
+    return (size_t)zt_tile_count(p->width, p->height) * ZT_REUSE_PARTS;
+}
+
+static void pass_pixels(stream *s, zt_picture *p, bool opaque) {
+    const size_t count = pixel_count(p), size = (opaque ? 3 : 4) * sizeof(float);
+    if (!opaque) {
+        pass(s, p->pixels, count * size);
+        return;
+    }
+    for (size_t i = 0; i < count && !s->lacking; i++) {
+        pass(s, p->pixels + 4 * i, size);
+        if (!s->to) p->pixels[4 * i + 3] = 1;
+    }
+}
+
+static void pass_all(stream *s, zt_picture *p, bool opaque) {
+    pass_outline(s, &p->outline);
+    for (size_t i = 0; i < footprint_count(p) && !s->lacking; i++)
+        pass_footprint(s, &p->footprints[i]);
+    pass_pixels(s, p, opaque);
+}
+
+/* ---- writing --------------------------------------------------------------------------------
+ */
+
+size_t zt_keepsake_room(const zt_picture *p) {
+    return sizeof(zt_keepsake_head) + sizeof p->outline +
+           (size_t)p->outline.thing_count * sizeof *p->outline.things +
+           (size_t)p->outline.lamp_count * sizeof *p->outline.lamps +
+           footprint_count(p) * sizeof *p->footprints + pixel_count(p) * 4 * sizeof(float);
+}
+
+static bool is_opaque(const zt_picture *p) {
+    size_t i = 0;
+    while (i < pixel_count(p) && p->pixels[4 * i + 3] == 1) i++;
+    return i == pixel_count(p);
+}
+
+void zt_keepsake_write(unsigned char *bytes, zt_keepsake_head *head, const zt_picture *picture,
+                       const char *arithmetic) {
+    zt_picture p = *picture; /* nothing in it changes */
+    stream s = {.to = bytes + sizeof *head};
+    head->version = version_of(arithmetic);
+    head->checksum = (zt_hash){0, 0};
+    head->view = p.view;
+    head->frame_key = p.frame_key;
+    head->width = p.width;
+    head->height = p.height;
+    head->thing_count = p.outline.thing_count;
+    head->lamp_count = p.outline.lamp_count;
+    head->opaque = is_opaque(&p);
+    pass_all(&s, &p, head->opaque);
+    head->size = (uint64_t)(s.to - bytes);
+    memcpy(bytes, head, sizeof *head);
+}
+
+void zt_keepsake_seal(unsigned char *bytes) {
+    zt_keepsake_head head;
+    memcpy(&head, bytes, sizeof head);
+    head.checksum = zt_hash_bytes(bytes + CHECKED, (size_t)head.size - CHECKED);
+    memcpy(bytes, &head, sizeof head);
+}
+
+/* ---- reading --------------------------------------------------------------------------------
+ */
+
+/* What is said of sizes is no more than there are bytes: as many of each as each takes at
+ * least.
+ */
+bool zt_keepsake_knows(const zt_keepsake_head *h, uint64_t size, const char *arithmetic) {
+    enum { LEAST = 60, SIDE_MAX = ZT_IMAGE_SIDE_MAX };
+    if (!zt_hash_equal(h->version, version_of(arithmetic)) || h->size != size) return false;
+    if (h->width < 1 || h->height < 1 || h->width > SIDE_MAX || h->height > SIDE_MAX)
+        return false;
+    uint64_t pixels = (uint64_t)h->width * (uint64_t)h->height;
+    return h->thing_count >= 0 && h->lamp_count >= 0 && h->opaque <= 1 &&
+           (uint64_t)h->thing_count <= size / LEAST &&
+           (uint64_t)h->lamp_count <= size / LEAST && pixels <= size / (3 * sizeof(float));
+}
+
+static bool make_outline(zt_picture *p, const zt_keepsake_head *h) {
+    zt_arena_reset(&p->arena);
+    p->outline = (zt_outline){.thing_count = h->thing_count, .lamp_count = h->lamp_count};
+    p->outline.things = ZT_PUSH(&p->arena, zt_outline_thing, (size_t)h->thing_count);
+    p->outline.lamps = ZT_PUSH(&p->arena, zt_outline_lamp, (size_t)h->lamp_count);
+    return p->outline.things && p->outline.lamps;
+}
+
+bool zt_keepsake_read(zt_picture *p, const unsigned char *bytes, uint64_t size,
+                      const char *arithmetic) {
+    zt_keepsake_head head;
+    p->whole = false;
+    if (size < sizeof head) return false;
+    memcpy(&head, bytes, sizeof head);
+    if (!zt_keepsake_knows(&head, size, arithmetic) ||
+        !zt_hash_equal(head.checksum, zt_hash_bytes(bytes + CHECKED, (size_t)size - CHECKED)) ||
+        zt_picture_open(p, head.width, head.height) != ZT_OK || !make_outline(p, &head))
+        return false;
+    stream s = {.from = bytes + sizeof head, .left = (size_t)size - sizeof head};
+    pass_all(&s, p, head.opaque);
+    p->view = head.view;
+    p->frame_key = head.frame_key;
+    p->whole = !s.lacking && s.left == 0;
+    return p->whole;
+}
