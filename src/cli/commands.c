@@ -119,7 +119,7 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                         "or srgb, rec709, raw: how linear light is shown where it is for a "
                         "display"},
     [ZT_OPTION_CODEC] = {"codec", 0, "h265",
-                         "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1"},
+                         "of a movie: h264 h265 av1 vp9 prores prores4444 dnxhr ffv1 utvideo"},
     [ZT_OPTION_CRF] = {"crf", 0, "18", "how good a movie is, 0 the best, on its codec's scale"},
     [ZT_OPTION_BITRATE] = {"bitrate", 0, "8M", "bits a second of a movie, instead of --crf"},
     [ZT_OPTION_PRESET] = {"preset", 0, "medium",

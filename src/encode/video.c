@@ -28,11 +28,13 @@ typedef struct movie {
     AVCodecParameters *parameters; /* of the film's packets */
     zt_aside aside;                /* of the film while it is joined */
     zt_video_growth growth;
+    zt_video_store store; /* of kinds that have no pieces */
 } movie;
 
-/* A frame that is ready to be encoded. */
+/* A frame on its way. */
 typedef struct picture {
     AVFrame *frame;
+    AVPacket *packet; /* where it was encoded already; else NULL */
     double render_s;
 } picture;
 
@@ -47,6 +49,7 @@ static void free_options(movie *m) {
 /* What later runs can use stays. */
 static void movie_free(movie *m, bool keeps_pieces, bool keeps_frames) {
     zt_video_growth_close(&m->growth, keeps_pieces, keeps_frames);
+    zt_video_store_close(&m->store);
     zt_aside_drop(&m->aside);
     zt_video_pixels_close(&m->pixels);
     av_frame_free(&m->like);
@@ -74,13 +77,14 @@ static zt_status copy_options(movie *m, const zt_output_option *options) {
 /* How frames wait for those films that are made of all at once. */
 static zt_status choose_grown(movie *m) {
     m->grown = m->choice;
-    if (!m->choice.stored) return ZT_OK;
+    const zt_codec_store *stored = m->choice.stored;
+    if (!stored) return ZT_OK;
     const zt_video_ear ear = {"pieces.mkv", m->ear.listener};
     zt_output_option options[] = {
-        {"codec", "ffv1"}, {"pixel-format", m->choice.stored}, {NULL, NULL}};
+        {"codec", stored->codec}, {"pixel-format", stored->pixels}, {NULL, NULL}};
     ZT_TRY(zt_video_choose(&m->grown, &m->format, options, &ear));
     m->grown.options = NULL;
-    m->grown.stored = m->choice.stored;
+    m->grown.stored = stored;
     return ZT_OK;
 }
 
@@ -154,11 +158,10 @@ static zt_status open_all(movie *m, const char *target, const zt_output_option *
     if (zt_wish_value(options, "audio") && !kind->sound)
         zt_tell(m->ear.listener, ZT_WARNING, "%s has no sound: %s files hold none", target,
                 kind->ending);
-    if (choice.codec->palette && !zt_module_door("video_palette", "a GIF", m->ear.listener))
-        return ZT_EUNSUPPORTED;
     ZT_TRY(zt_aside_open_as(&m->aside, target, ".joined", m->ear.listener));
     ZT_TRY(check_room(m));
     ZT_TRY(make_like(m));
+    ZT_TRY(zt_video_store_open(&m->store, &m->choice, m->like, &m->ear));
     return open_growth(m);
 }
 
@@ -186,6 +189,7 @@ static bool movie_wants(void *state, int64_t position) {
 static void drop_frame(void *state, void *made) {
     (void)state;
     picture *ready = made;
+    av_packet_free(&ready->packet);
     av_frame_free(&ready->frame);
     free(ready);
 }
@@ -197,7 +201,10 @@ static zt_status make_frame(void **made, void *state, const zt_image *image, int
     picture *ready = calloc(1, sizeof *ready);
     if (!ready) return ZT_EMEMORY;
     if (image->info.known) ready->render_s = image->info.render_s;
+    zt_video_alone *alone = m->growth.alone;
     zt_status status = zt_video_pixels_convert(&ready->frame, m->pixels, image, &m->ear);
+    if (status == ZT_OK && alone)
+        status = zt_video_alone_encode(&ready->packet, alone, ready->frame, &m->ear);
     if (status == ZT_OK)
         *made = ready;
     else
@@ -210,7 +217,10 @@ static zt_status write_frame(void *state, void *made, int64_t number) {
     movie *m = state;
     const picture *ready = made;
     zt_libav_listen();
-    zt_status status = zt_video_growth_put(&m->growth, ready->frame, ready->render_s);
+    zt_status status =
+        zt_video_growth_put(&m->growth, ready->frame, ready->packet, ready->render_s);
+    if (status == ZT_OK)
+        status = zt_video_store_see(&m->store, ready->frame, m->growth.next - 1);
     drop_frame(state, made);
     return status;
 }
@@ -222,8 +232,8 @@ static zt_status join(movie *m, zt_hash *checksum) {
     ZT_TRY(zt_video_growth_pieces(&pieces, &count, g));
     zt_status status =
         m->choice.stored
-            ? zt_video_store_join(&frame_count, m->aside.path, &m->choice, &m->format, &g->part,
-                                  pieces, count, m->like, &m->ear)
+            ? zt_video_store_join(&frame_count, &m->store, m->aside.path, &m->format, &g->part,
+                                  pieces, count)
             : zt_video_join_pieces(checksum, m->aside.path, &m->choice, &m->format,
                                    m->parameters, &g->part, pieces, count, &m->ear);
     free(pieces);

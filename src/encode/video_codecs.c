@@ -121,7 +121,8 @@ static zt_status choose_pixels(zt_video_choice *choice, bool transparent,
     names known = {.nearest = zt_nearest_to(name)};
     for (const char *const *p = codec->pixels; *p; p++) {
         if (choice->pixels != AV_PIX_FMT_NONE && av_get_pix_fmt(*p) == choice->pixels) {
-            choice->stored = codec->stored[p - codec->pixels];
+            const zt_codec_store *stored = &codec->stored[p - codec->pixels];
+            choice->stored = stored->codec ? stored : NULL;
             return check_alpha(choice, transparent, ear);
         }
         add_name(&known, *p);

@@ -31,6 +31,11 @@ typedef struct zt_codec_setting {
     const char *pixels; /* only with this pixel format; NULL: always */
 } zt_codec_setting;
 
+/* Another codec that loses nothing, and its pixel format. */
+typedef struct zt_codec_store {
+    const char *codec, *pixels;
+} zt_codec_store;
+
 enum { ZT_CODEC_LIST_MAX = 10 };
 
 /* A codec, by the name of the option. Lists of texts end with NULL. */
@@ -39,9 +44,9 @@ typedef struct zt_codec {
     const char *encoder;      /* as libavcodec calls it */
     const char *decoder;      /* of alpha, where libavcodec's own leaves it out; else NULL */
     const char *endings[4];
-    const char *pixels[ZT_CODEC_LIST_MAX]; /* the first one where none is asked for */
-    const char *stored[ZT_CODEC_LIST_MAX]; /* how frames of each wait in FFV1, where the kind
-                                              of file has no pieces */
+    const char *pixels[ZT_CODEC_LIST_MAX];    /* the first one where none is asked for */
+    zt_codec_store stored[ZT_CODEC_LIST_MAX]; /* how frames of each wait, where the kind of
+                                                 file has no pieces */
     const char *opaque_in; /* the ending of files that have no place for its alpha; or NULL */
     int width_min, height_min;
     const char *crf; /* where none is asked for; NULL: there is no such scale */
@@ -54,6 +59,8 @@ typedef struct zt_codec {
                                   AVX-512; NULL: none */
     int thread_count;          /* fixed: what comes out may depend on it */
     uint32_t tag;              /* in MP4 and MOV; 0: by the muxer */
+    bool alone;                /* each picture is encoded by itself, on one thread; what comes
+                                  out depends on nothing before */
     bool lossless;             /* the decoded pixels are those that were sent */
     bool palette;              /* made from the film */
     double bits_a_pixel;       /* of a usual film */
@@ -69,9 +76,9 @@ typedef struct zt_video_choice {
     const zt_codec *codec;
     const AVCodec *encoder;
     enum AVPixelFormat pixels;
-    const char *stored;       /* of the codec's; NULL: it has pieces */
-    const char *crf, *preset; /* NULL: does not apply */
-    int64_t bitrate;          /* bits a second; 0: by crf, or by itself */
+    const zt_codec_store *stored; /* of the codec's; NULL: it has pieces */
+    const char *crf, *preset;     /* NULL: does not apply */
+    int64_t bitrate;              /* bits a second; 0: by crf, or by itself */
     const zt_output_option *options;
 } zt_video_choice;
 

@@ -189,6 +189,7 @@ zt_status zt_video_growth_open(zt_video_growth *g, const char *target,
     g->piece_frames = GOPS_A_PIECE * (int64_t)zt_video_gop_frames(g->rate);
     bool keeps = g->plan && !g->plan->overwrites;
     if (!g->encoder) ZT_TRY(open_encoder(g));
+    ZT_TRY(zt_video_alone_open(&g->alone, choice, g->encoder, like));
     ZT_TRY(find_parameters(g));
     ZT_TRY(zt_aside_open(&g->aside, target, ear->listener));
     ZT_TRY(zt_video_part_open(&g->part, g->aside.path, g->parameters, g->rate, keeps, ear));
@@ -254,8 +255,10 @@ static zt_status finish_piece(zt_video_growth *g) {
     int64_t first = g->next - g->in_piece, index = first / g->piece_frames;
     bool whole = g->in_piece == frames_of(g, index);
     zt_hash key = whole ? key_of(g, first, g->in_piece) : (zt_hash){0};
-    ZT_TRY(encode(g, NULL));
-    zt_video_encoder_close(&g->encoder, NULL);
+    if (!g->alone) {
+        ZT_TRY(encode(g, NULL));
+        zt_video_encoder_close(&g->encoder, NULL);
+    }
     ZT_TRY(zt_video_part_finish(&g->part, g->in_piece, key, g->render_s));
     ZT_TRY(set_piece(g, index, g->part.count - 1));
     g->in_piece = 0;
@@ -263,17 +266,35 @@ static zt_status finish_piece(zt_video_growth *g) {
     return whole ? zt_video_spool_pass(&g->spool, g->next) : ZT_OK;
 }
 
-static zt_status encode_frame(zt_video_growth *g, AVFrame *frame, double render_s) {
+static zt_status put_frame(zt_video_growth *g, AVFrame *frame, AVPacket *packet,
+                           double render_s) {
     ZT_TRY(keep_sample(g, frame));
     if (g->in_piece == 0) ZT_TRY(begin_piece(g));
-    frame->pts = g->in_piece;
-    frame->pict_type = AV_PICTURE_TYPE_NONE;
-    ZT_TRY(encode(g, frame));
+    if (packet) {
+        packet->pts = packet->dts = g->in_piece;
+        ZT_TRY(put_packet(g, packet));
+    } else {
+        frame->pts = g->in_piece;
+        frame->pict_type = AV_PICTURE_TYPE_NONE;
+        ZT_TRY(encode(g, frame));
+    }
     g->in_piece++;
     g->next++;
     g->render_s += render_s;
     return g->in_piece == frames_of(g, (g->next - 1) / g->piece_frames) ? finish_piece(g)
                                                                         : ZT_OK;
+}
+
+static zt_status put_spooled(zt_video_growth *g, const zt_video_spooled *there) {
+    AVFrame *frame = NULL;
+    AVPacket *packet = NULL;
+    zt_status status = zt_video_spool_get(&frame, &g->spool, there);
+    if (status == ZT_OK && g->alone)
+        status = zt_video_alone_encode(&packet, g->alone, frame, g->ear);
+    if (status == ZT_OK) status = put_frame(g, frame, packet, there->render_s);
+    av_packet_free(&packet);
+    av_frame_free(&frame);
+    return status;
 }
 
 /* Goes on to the next frame that has to come. */
@@ -286,21 +307,18 @@ static zt_status catch_up(zt_video_growth *g) {
         }
         const zt_video_spooled *there =
             zt_video_spool_find(&g->spool, g->next, frame_key(g, g->next));
-        AVFrame *frame = NULL;
-        zt_status status = zt_video_spool_get(&frame, &g->spool, there);
-        if (status == ZT_OK) status = encode_frame(g, frame, there->render_s);
-        av_frame_free(&frame);
-        ZT_TRY(status);
+        ZT_TRY(put_spooled(g, there));
     }
     return ZT_OK;
 }
 
-zt_status zt_video_growth_put(zt_video_growth *g, AVFrame *frame, double render_s) {
+zt_status zt_video_growth_put(zt_video_growth *g, AVFrame *frame, AVPacket *packet,
+                              double render_s) {
     ZT_TRY(catch_up(g));
     zt_hash key = frame_key(g, g->next);
     if (zt_hash_is_known(key) && render_s >= SPOOLED_S)
         ZT_TRY(zt_video_spool_put(&g->spool, frame, g->next, key, render_s));
-    return encode_frame(g, frame, render_s);
+    return put_frame(g, frame, packet, render_s);
 }
 
 zt_status zt_video_growth_end(zt_video_growth *g) {
@@ -331,6 +349,7 @@ void zt_video_growth_close(zt_video_growth *g, bool keeps_pieces, bool keeps_fra
     zt_video_spool_close(&g->spool, keeps_frames);
     if (!(keeps_pieces && some)) zt_aside_drop(&g->aside);
     zt_aside_forget(&g->aside);
+    zt_video_alone_close(&g->alone);
     zt_video_encoder_close(&g->encoder, g->in_piece == 0 ? g->like : NULL);
     avcodec_parameters_free(&g->parameters);
     av_packet_free(&g->packet);

@@ -4,6 +4,7 @@
 #define ZT_ENCODE_VIDEO_GROWTH_H
 
 #include "encode/aside.h"
+#include "encode/video_alone.h"
 #include "encode/video_check.h"
 #include "encode/video_codecs.h"
 #include "encode/video_part.h"
@@ -16,8 +17,9 @@ typedef struct zt_video_growth {
     const zt_output_plan *plan;    /* NULL: none */
     AVFrame *like;                 /* borrowed: a frame like all that come */
     AVRational rate;
-    zt_hash manner;                /* of how frames become packets */
-    AVCodecContext *encoder;       /* of the piece under way, or the next one; NULL: none yet */
+    zt_hash manner;          /* of how frames become packets */
+    AVCodecContext *encoder; /* of the piece under way, or the next one; NULL: none yet */
+    zt_video_alone *alone;   /* what encodes instead where pictures stand alone; else NULL */
     AVCodecParameters *parameters; /* of its packets */
     AVPacket *packet;
     zt_aside aside; /* of the file that grows */
@@ -50,8 +52,10 @@ zt_status zt_video_growth_open(zt_video_growth *growth, const char *target,
                                AVFrame *like, AVCodecContext *encoder,
                                const zt_video_growth_words *words, const zt_video_ear *ear);
 
-/* Takes the next frame that was not kept, which took `render_s` seconds. */
-zt_status zt_video_growth_put(zt_video_growth *growth, AVFrame *frame, double render_s);
+/* Takes the next frame that was not kept, which took `render_s` seconds; and its packet where
+ * growth->alone has encoded it, else NULL. */
+zt_status zt_video_growth_put(zt_video_growth *growth, AVFrame *frame, AVPacket *packet,
+                              double render_s);
 
 /* No more come: completes the piece under way, after what else is kept that follows. The film
  * has growth->next frames then. */

@@ -9,7 +9,7 @@
 
 #include "base/module.h"
 
-/* Frames are of one size, in BGRA or BGR0. All calls give 0, or an error of libav's. */
+/* Frames are of one size, in one format of R'G'B'. All calls give 0, or an error of libav's. */
 typedef struct zt_video_palette_door {
     /* Begins counting colours. */
     int (*open)(void **palette, const AVFrame *first);

@@ -5,181 +5,244 @@
 
 #include <libavutil/pixdesc.h>
 
+#include "base/pool.h"
 #include "encode/video_encoder.h"
-#include "encode/video_palette.h"
 
-typedef struct store {
+/* The stored frames, in order. */
+typedef struct tape {
     const zt_video_ear *ear;
     const zt_video_part *part;
     const zt_video_piece *const *pieces;
-    int64_t piece_count;
-    const AVFrame *like;
-    AVCodecContext *decoder, *encoder;
-    AVPacket *packet;
-    AVFrame *stored, *frame; /* as it was decoded; as it is encoded, where that is another */
+    int64_t count, next; /* pieces, and the one that is read */
+    zt_piece_reader reader;
+    AVCodecContext *decoder;
+    AVFrame *frame; /* that was read last */
+} tape;
+
+/* A film that is made of them: the next frame is made while one is encoded. */
+typedef struct making {
+    zt_video_store *store;
+    tape tape;
     uint16_t *line;
+    AVFrame *next; /* NULL: there is none */
+    zt_status status;
+    AVCodecContext *encoder;
+    AVPacket *packet;
     zt_video_join join;
-    int64_t sent;                      /* frames, to the encoder */
-    const zt_video_palette_door *door; /* NULL: no palette */
-    void *palette;
-    zt_status (*use)(struct store *s);
-} store;
+    int64_t sent; /* frames, to the encoder */
+} making;
 
-static zt_status put_packet(void *user, AVPacket *packet) {
-    store *s = user;
-    return zt_video_join_put(&s->join, packet, s->ear);
-}
-
-static zt_status encode(store *s, AVFrame *frame) {
-    if (frame) {
-        frame->pts = s->sent++;
-        frame->pict_type = AV_PICTURE_TYPE_NONE;
-    }
-    return zt_video_encode(s->encoder, frame, s->packet, put_packet, s, s->ear);
-}
-
-static zt_status count_colours(store *s) {
-    AV_TRY(s->ear, s->door->count(s->palette, s->stored));
-    return ZT_OK;
-}
-
-static zt_status use_palette(store *s) {
-    AVFrame *frame = NULL;
-    AV_TRY(s->ear, s->door->use(&frame, s->palette, s->stored));
-    zt_status status = encode(s, frame);
-    av_frame_free(&frame);
-    return status;
-}
-
-/* The same numbers in another layout. */
-static zt_status use_as_it_is(store *s) {
-    AVFrame *f = s->frame;
-    const AVPixFmtDescriptor *from = av_pix_fmt_desc_get(s->stored->format),
-                             *to = av_pix_fmt_desc_get(f->format);
-    AV_TRY(s->ear, av_frame_make_writable(f));
-    memset(f->buf[0]->data, 0, f->buf[0]->size); /* writing adds bits */
-    for (int y = 0; y < f->height; y++)
-        for (int c = 0; c < to->nb_components; c++) {
-            av_read_image_line(s->line, (const uint8_t **)s->stored->data, s->stored->linesize,
-                               from, 0, y, c, f->width, 0);
-            av_write_image_line(s->line, f->data, f->linesize, to, 0, y, c, f->width);
-        }
-    return encode(s, f);
-}
-
-/* Takes what the decoder has ready. */
-static zt_status use_ready(store *s) {
-    for (;;) {
-        int error = avcodec_receive_frame(s->decoder, s->stored);
-        if (error == AVERROR(EAGAIN) || error == AVERROR_EOF) return ZT_OK;
-        AV_TRY(s->ear, error);
-        AV_TRY(s->ear, av_frame_copy_props(s->stored, s->like));
-        ZT_TRY(s->use(s));
-    }
-}
-
-static zt_status decode_piece(store *s, zt_piece_reader *reader) {
-    for (;;) {
-        int error = zt_piece_next(reader);
-        if (error == AVERROR_EOF) return ZT_OK;
-        AV_TRY(s->ear, error);
-        AV_TRY(s->ear, avcodec_send_packet(s->decoder, reader->packet));
-        ZT_TRY(use_ready(s));
-    }
-}
-
-static zt_status open_decoder(store *s, const AVCodecParameters *parameters) {
+static zt_status open_decoder(tape *t, const AVCodecParameters *parameters) {
     const AVCodec *codec = avcodec_find_decoder(parameters->codec_id);
-    if (!codec) return zt_libav_refuse(s->ear, AVERROR_DECODER_NOT_FOUND);
-    s->decoder = avcodec_alloc_context3(codec);
-    if (!s->decoder) return ZT_EMEMORY;
-    AV_TRY(s->ear, avcodec_parameters_to_context(s->decoder, parameters));
-    s->decoder->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK;
-    s->decoder->thread_count = 0; /* one a core: what is decoded does not depend on it */
-    AV_TRY(s->ear, avcodec_open2(s->decoder, codec, NULL));
+    if (!codec) return zt_libav_refuse(t->ear, AVERROR_DECODER_NOT_FOUND);
+    t->decoder = avcodec_alloc_context3(codec);
+    t->frame = av_frame_alloc();
+    if (!t->decoder || !t->frame) return ZT_EMEMORY;
+    AV_TRY(t->ear, avcodec_parameters_to_context(t->decoder, parameters));
+    t->decoder->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK;
+    t->decoder->thread_count = 0; /* one a core: what is decoded does not depend on it */
+    AV_TRY(t->ear, avcodec_open2(t->decoder, codec, NULL));
     return ZT_OK;
 }
 
-/* Each frame of all pieces, in order. */
-static zt_status use_all(store *s, zt_status (*use)(store *s)) {
-    zt_status status = ZT_OK;
-    s->use = use;
-    for (int64_t i = 0; i < s->piece_count && status == ZT_OK; i++) {
-        zt_piece_reader reader;
-        int error = zt_video_part_read(&reader, s->part, s->pieces[i]);
-        if (error < 0) status = zt_libav_refuse(s->ear, error);
-        if (status == ZT_OK && !s->decoder) status = open_decoder(s, reader.stream->codecpar);
-        if (status == ZT_OK) status = decode_piece(s, &reader);
-        zt_piece_end(&reader);
+static zt_status open_piece(tape *t) {
+    AV_TRY(t->ear, zt_video_part_read(&t->reader, t->part, t->pieces[t->next]));
+    return t->decoder ? ZT_OK : open_decoder(t, t->reader.stream->codecpar);
+}
+
+/* Gives the decoder the next packet, or the end. */
+static zt_status feed(tape *t) {
+    for (; t->next < t->count; t->next++) {
+        if (!t->reader.container) ZT_TRY(open_piece(t));
+        int error = zt_piece_next(&t->reader);
+        if (error >= 0) error = avcodec_send_packet(t->decoder, t->reader.packet);
+        if (error >= 0) return ZT_OK;
+        if (error != AVERROR_EOF) return zt_libav_refuse(t->ear, error);
+        zt_piece_end(&t->reader);
     }
-    ZT_TRY(status);
-    AV_TRY(s->ear, avcodec_send_packet(s->decoder, NULL));
-    ZT_TRY(use_ready(s));
-    avcodec_free_context(&s->decoder);
+    AV_TRY(t->ear, avcodec_send_packet(t->decoder, NULL));
     return ZT_OK;
 }
 
-static zt_status choose_palette(store *s) {
-    s->door = zt_module_door("video_palette", "a GIF", s->ear->listener);
+/* Reads the next frame; false after the last. */
+static zt_status read_frame(bool *there, tape *t) {
+    for (;;) {
+        int error = t->decoder ? avcodec_receive_frame(t->decoder, t->frame) : AVERROR(EAGAIN);
+        *there = error >= 0;
+        if (error == AVERROR_EOF) return ZT_OK;
+        if (error != AVERROR(EAGAIN)) AV_TRY(t->ear, error);
+        if (*there) return ZT_OK;
+        ZT_TRY(feed(t));
+    }
+}
+
+static void stop(tape *t) {
+    zt_piece_end(&t->reader);
+    avcodec_free_context(&t->decoder);
+    av_frame_free(&t->frame);
+}
+
+static void rewind_tape(tape *t) {
+    stop(t);
+    t->next = 0;
+}
+
+zt_status zt_video_store_open(zt_video_store *s, const zt_video_choice *choice,
+                              const AVFrame *like, const zt_video_ear *ear) {
+    *s = (zt_video_store){.ear = ear, .choice = choice, .like = like};
+    if (!choice->codec->palette) return ZT_OK;
+    s->door = zt_module_door("video_palette", "a GIF", ear->listener);
     if (!s->door) return ZT_EUNSUPPORTED;
-    AV_TRY(s->ear, s->door->open(&s->palette, s->like));
-    ZT_TRY(use_all(s, count_colours));
+    AV_TRY(ear, s->door->open(&s->palette, like));
+    return ZT_OK;
+}
+
+void zt_video_store_close(zt_video_store *s) {
+    if (s->door) s->door->close(s->palette);
+    *s = (zt_video_store){0};
+}
+
+/* Which colours are chosen may depend on the order in which they are counted. */
+zt_status zt_video_store_see(zt_video_store *s, AVFrame *frame, int64_t position) {
+    if (!s->door || position != s->counted) return ZT_OK;
+    AV_TRY(s->ear, s->door->count(s->palette, frame));
+    s->counted++;
+    return ZT_OK;
+}
+
+/* Counts the colours of those that were not seen. */
+static zt_status choose_palette(zt_video_store *s, tape *t, int64_t frame_count) {
+    bool there = s->counted < frame_count;
+    for (int64_t i = 0; there; i++) {
+        ZT_TRY(read_frame(&there, t));
+        if (there) ZT_TRY(zt_video_store_see(s, t->frame, i));
+    }
+    rewind_tape(t);
     AV_TRY(s->ear, s->door->choose(s->palette));
     return ZT_OK;
 }
 
-static zt_status make_frame(store *s, const zt_video_choice *choice) {
-    s->packet = av_packet_alloc();
-    s->stored = av_frame_alloc();
-    s->frame = av_frame_alloc();
-    s->line = malloc((size_t)s->like->width * sizeof *s->line);
-    if (!s->packet || !s->stored || !s->frame || !s->line) return ZT_EMEMORY;
-    AV_TRY(s->ear, av_frame_copy_props(s->frame, s->like));
-    s->frame->width = s->like->width;
-    s->frame->height = s->like->height;
-    s->frame->format = choice->pixels;
-    AV_TRY(s->ear, av_frame_get_buffer(s->frame, 0));
+/* The same numbers in another layout. */
+static void copy_numbers(AVFrame *out, const AVFrame *stored, uint16_t *line) {
+    const AVPixFmtDescriptor *from = av_pix_fmt_desc_get(stored->format),
+                             *to = av_pix_fmt_desc_get(out->format);
+    memset(out->buf[0]->data, 0, out->buf[0]->size); /* writing adds bits */
+    for (int y = 0; y < out->height; y++)
+        for (int c = 0; c < to->nb_components; c++) {
+            av_read_image_line(line, (const uint8_t **)stored->data, stored->linesize, from, 0,
+                               y, c, out->width, 0);
+            av_write_image_line(line, out->data, out->linesize, to, 0, y, c, out->width);
+        }
+}
+
+/* A new frame like those of the film. */
+static zt_status make_frame(AVFrame **out, const zt_video_store *s) {
+    AVFrame *frame = *out = av_frame_alloc();
+    if (!frame) return ZT_EMEMORY;
+    frame->width = s->like->width;
+    frame->height = s->like->height;
+    frame->format = s->choice->pixels;
+    AV_TRY(s->ear, av_frame_copy_props(frame, s->like));
+    AV_TRY(s->ear, av_frame_get_buffer(frame, 0));
     return ZT_OK;
 }
 
-static zt_status open_join(store *s, const char *path, const zt_video_choice *choice,
-                           const zt_output_format *format) {
-    const AVOutputFormat *muxer = av_guess_format(choice->container->muxer, NULL, NULL);
-    ZT_TRY(zt_video_encoder_open(&s->encoder, choice, muxer, s->frame, s->part->rate, s->ear));
+static zt_status make_next(making *m) {
+    const zt_video_store *s = m->store;
+    bool there;
+    ZT_TRY(read_frame(&there, &m->tape));
+    if (!there) return ZT_OK;
+    AVFrame *stored = m->tape.frame;
+    AV_TRY(s->ear, av_frame_copy_props(stored, s->like));
+    if (s->door) {
+        AV_TRY(s->ear, s->door->use(&m->next, s->palette, stored));
+        return ZT_OK;
+    }
+    ZT_TRY(make_frame(&m->next, s));
+    copy_numbers(m->next, stored, m->line);
+    return ZT_OK;
+}
+
+static void run_errand(void *user) {
+    making *m = user;
+    zt_libav_listen();
+    m->status = make_next(m);
+}
+
+static zt_status put_packet(void *user, AVPacket *packet) {
+    making *m = user;
+    return zt_video_join_put(&m->join, packet, m->store->ear);
+}
+
+static zt_status encode(making *m, AVFrame *frame) {
+    if (frame) {
+        frame->pts = m->sent++;
+        frame->pict_type = AV_PICTURE_TYPE_NONE;
+    }
+    return zt_video_encode(m->encoder, frame, m->packet, put_packet, m, m->store->ear);
+}
+
+static zt_status encode_all(making *m) {
+    zt_errand *errand = NULL;
+    ZT_TRY(zt_errand_open(&errand, run_errand, m));
+    zt_errand_send(errand);
+    for (bool more = true; more;) {
+        zt_errand_wait(errand);
+        AVFrame *frame = m->next;
+        m->next = NULL;
+        more = frame && m->status == ZT_OK;
+        if (more) zt_errand_send(errand);
+        zt_status status = more ? encode(m, frame) : ZT_OK;
+        av_frame_free(&frame);
+        if (status == ZT_OK) continue;
+        zt_errand_close(&errand);
+        return status;
+    }
+    zt_errand_close(&errand);
+    ZT_TRY(m->status);
+    return encode(m, NULL);
+}
+
+/* The encoder gets frames of the film's pixels; and the file what it says of itself. */
+static zt_status open_join(making *m, const char *path, const zt_output_format *format) {
+    const zt_video_store *s = m->store;
+    const AVOutputFormat *muxer = av_guess_format(s->choice->container->muxer, NULL, NULL);
+    ZT_TRY(zt_video_encoder_open(&m->encoder, s->choice, muxer, s->like, m->tape.part->rate,
+                                 s->ear));
     AVCodecParameters *of = avcodec_parameters_alloc();
     if (!of) return ZT_EMEMORY;
-    int error = avcodec_parameters_from_context(of, s->encoder);
+    int error = avcodec_parameters_from_context(of, m->encoder);
     zt_status status = error < 0
                            ? zt_libav_refuse(s->ear, error)
-                           : zt_video_join_open(&s->join, path, choice, format, of, s->ear);
+                           : zt_video_join_open(&m->join, path, s->choice, format, of, s->ear);
     avcodec_parameters_free(&of);
     return status;
 }
 
-static zt_status join_all(store *s, const char *path, const zt_video_choice *choice,
-                          const zt_output_format *format) {
-    ZT_TRY(make_frame(s, choice));
-    if (choice->codec->palette) ZT_TRY(choose_palette(s));
-    ZT_TRY(open_join(s, path, choice, format));
-    ZT_TRY(use_all(s, s->door ? use_palette : use_as_it_is));
-    ZT_TRY(encode(s, NULL));
-    return zt_video_join_finish(&s->join, s->ear);
+static zt_status make_film(making *m, const char *path, const zt_output_format *format) {
+    zt_video_store *s = m->store;
+    const zt_video_piece *last = m->tape.pieces[m->tape.count - 1];
+    m->packet = av_packet_alloc();
+    m->line = malloc((size_t)s->like->width * sizeof *m->line);
+    if (!m->packet || !m->line) return ZT_EMEMORY;
+    if (s->door) ZT_TRY(choose_palette(s, &m->tape, last->first + last->count));
+    ZT_TRY(open_join(m, path, format));
+    ZT_TRY(encode_all(m));
+    return zt_video_join_finish(&m->join, s->ear);
 }
 
-zt_status zt_video_store_join(int64_t *frame_count, const char *path,
-                              const zt_video_choice *choice, const zt_output_format *format,
-                              const zt_video_part *part, const zt_video_piece *const *pieces,
-                              int64_t count, const AVFrame *like, const zt_video_ear *ear) {
-    store s = {.ear = ear, .part = part, .pieces = pieces, .piece_count = count, .like = like};
-    zt_status status = join_all(&s, path, choice, format);
-    *frame_count = s.sent;
-    zt_video_join_close(&s.join);
-    avcodec_free_context(&s.decoder);
-    zt_video_encoder_close(&s.encoder, NULL);
-    av_packet_free(&s.packet);
-    av_frame_free(&s.stored);
-    av_frame_free(&s.frame);
-    free(s.line);
-    if (s.door) s.door->close(s.palette);
+zt_status zt_video_store_join(int64_t *frame_count, zt_video_store *store, const char *path,
+                              const zt_output_format *format, const zt_video_part *part,
+                              const zt_video_piece *const *pieces, int64_t count) {
+    making m = {.store = store,
+                .tape = {.ear = store->ear, .part = part, .pieces = pieces, .count = count}};
+    zt_status status = make_film(&m, path, format);
+    *frame_count = m.sent;
+    zt_video_join_close(&m.join);
+    zt_video_encoder_close(&m.encoder, NULL);
+    stop(&m.tape);
+    av_frame_free(&m.next);
+    av_packet_free(&m.packet);
+    free(m.line);
     return status;
 }
