@@ -39,7 +39,8 @@ static inline void lens_begin(test_lens *l, const zt_camera *cameras, const doub
         l->moments[i].camera = cameras[i];
         l->times[i] = times ? times[i] : 0;
     }
-    l->exposure = (zt_exposure){l->moments, l->times, l->steps, count};
+    l->exposure = (zt_exposure){
+        .moments = l->moments, .times = l->times, .steps = l->steps, .moment_count = count};
     l->width = width;
     l->height = height;
     assert_int_equal(zt_lens_prepare(&l->lens, &l->exposure, width, height, &l->arena), ZT_OK);

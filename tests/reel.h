@@ -23,6 +23,7 @@ typedef struct reel {
     int64_t shown, copied; /* tiles; */
     int64_t kept;          /* among the copied, from what was kept */
     int64_t left_out;      /* samples of the last frame */
+    bool fresh; /* what it is compared with shares nothing with frames before: no hierarchies */
 } reel;
 
 static inline void reel_open(reel *r, const zt_mesh *meshes, int mesh_count) {
@@ -73,16 +74,21 @@ static inline uint64_t reel_key(const reel *r, const zt_exposure *e) {
     return parts[0].low;
 }
 
+static inline void reel_prepare(zt_ready *ready, reel *r, const zt_exposure *exposure,
+                                zt_meshes *meshes) {
+    assert_int_equal(zt_tracer_prepare(ready, exposure, r->precision,
+                                       zt_lens_finest_pixel(exposure, REEL_WIDTH, REEL_HEIGHT),
+                                       meshes, &r->frame),
+                     ZT_OK);
+}
+
 /* Shows an exposure both ways; returns how many tiles were copied. */
 static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     zt_ready ready;
     zt_lens *lens;
     zt_render_count count, alone;
     zt_arena_reset(&r->frame);
-    assert_int_equal(zt_tracer_prepare(&ready, exposure, r->precision,
-                                       zt_lens_finest_pixel(exposure, REEL_WIDTH, REEL_HEIGHT),
-                                       r->meshes, &r->frame),
-                     ZT_OK);
+    reel_prepare(&ready, r, exposure, r->meshes);
     assert_int_equal(zt_lens_prepare(&lens, exposure, REEL_WIDTH, REEL_HEIGHT, &r->frame),
                      ZT_OK);
     zt_render_job job = {.scene = &ready,
@@ -95,7 +101,15 @@ static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     assert_int_equal(zt_warp_prepare(&job.warp, &r->sampling, &r->frame), ZT_OK);
     assert_int_equal(zt_render(r->image, &count, &job, r->work, r->pool), ZT_OK);
     job.reuse = NULL;
+    zt_meshes *own = NULL;
+    if (r->fresh) {
+        const zt_scene *s = exposure->moments;
+        assert_int_equal(zt_meshes_open(&own, s->meshes, s->mesh_count, 1, (zt_listener){0}),
+                         ZT_OK);
+        reel_prepare(&ready, r, exposure, own);
+    }
     assert_int_equal(zt_render(r->alone, &alone, &job, r->work, r->pool), ZT_OK);
+    zt_meshes_close(&own);
     const size_t size = sizeof(float) * 4 * REEL_WIDTH * REEL_HEIGHT;
     for (size_t i = 0; i < size / sizeof(float); i++)
         if (memcmp(&r->image->pixels[i], &r->alone->pixels[i], sizeof(float)) != 0)

@@ -209,13 +209,12 @@ typedef struct stage {
 
 static zt_tracer *prepare(const zt_exposure *exposure, zt_meshes *meshes, zt_arena *arena) {
     zt_tracer *tracer;
-    zt_extent *extents;
-    int32_t count;
+    zt_extents extents;
     zt_needs needs;
     assert_int_equal(zt_needs_find(&needs, exposure, false, arena), ZT_OK);
-    assert_int_equal(ZT_REAL_NAME(zt_prepare)(&tracer, &extents, &count, exposure, &needs,
-                                              false, meshes, arena),
-                     ZT_OK);
+    assert_int_equal(
+        ZT_REAL_NAME(zt_prepare)(&tracer, &extents, exposure, &needs, false, meshes, arena),
+        ZT_OK);
     assert_int_equal(ZT_REAL_NAME(zt_prepare_search)(tracer, meshes, arena), ZT_OK);
     return tracer;
 }
@@ -228,7 +227,10 @@ static void set_stage(stage *st, test_scene *s, int moments) {
     static const double times[][MOMENTS_MAX] = {{0}, {0, 1}, {0, .25, 1}, {0, .125, .75, 1}};
     static const bool steps[MOMENTS_MAX] = {false};
     st->arena = (zt_arena){0};
-    st->exposure = (zt_exposure){scenes, times[moments - 1], steps, moments};
+    st->exposure = (zt_exposure){.moments = scenes,
+                                 .times = times[moments - 1],
+                                 .steps = steps,
+                                 .moment_count = moments};
     for (int m = 0; m < moments; m++) scenes[m] = s[m].scene;
     st->tracer = prepare(&st->exposure, st->meshes, &st->arena);
     st->object_count = s->scene.object_count;
@@ -251,7 +253,7 @@ static void set_stage(stage *st, test_scene *s, int moments) {
         for (int k = 2; k < 1 << ZT_HULL_LEVELS; k++) boxes[k] = boxes[1];
     }
     int32_t *single = ZT_PUSH(&st->arena, int32_t, (size_t)st->pieces.primitive_count);
-    st->pieces.crowd = NULL;
+    st->pieces.crowd_count = 0;
     st->pieces.tie = 0;
     st->pieces.single = single;
     st->pieces.single_count = 0;
@@ -392,7 +394,7 @@ static void tell(const zt_batch *rays, const stage *st, int i, const zt_batch *w
     printf("  got %d (kind %d) at %.17g, wanted %d (kind %d) at %.17g; crowd %d\n", hit,
            hit < 0 ? -1 : (int)st->tracer->primitives[hit].kind, (double)rays->t[i], other,
            other < 0 || other == INT32_MAX ? -1 : (int)st->tracer->primitives[other].kind,
-           (double)wanted->t[i], st->tracer->crowd != NULL);
+           (double)wanted->t[i], st->tracer->crowd_count > 0);
 }
 
 static void compare_nearest(zt_batch *rays, const stage *st) {

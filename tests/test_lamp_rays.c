@@ -90,8 +90,10 @@ static void test_same_bits_moving(void **state) {
     rays.count = ZT_BATCH - 3;
     rays.wants_path = true;
     for (int count = 2; count <= 3; count++) {
-        zt_exposure exposure = {moments + (3 - count),
-                                count == 3 ? times : (const double[]){0, 1}, steps, count};
+        zt_exposure exposure = {.moments = moments + (3 - count),
+                                .times = count == 3 ? times : (const double[]){0, 1},
+                                .steps = steps,
+                                .moment_count = count};
         EACH_PRECISION {
             for (int i = 0; i < 4; i++) {
                 setenv("ZOETROPE_ISA", names[i], 1);

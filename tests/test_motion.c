@@ -47,7 +47,8 @@ static void set_film(film *f, uint64_t *seed, int count) {
                           : floor(4000.0 * m / count + 90 * test_random(seed)) / 4096;
         f->steps[m] = false;
     }
-    f->exposure = (zt_exposure){f->scenes, f->times, f->steps, count};
+    f->exposure = (zt_exposure){
+        .moments = f->scenes, .times = f->times, .steps = f->steps, .moment_count = count};
 }
 
 /* Where a time is. */

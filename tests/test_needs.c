@@ -196,7 +196,10 @@ static void test_moving(void **state) {
         random_scene(&s[0]);
         move(&s[1], &s[0]);
         for (int m = 0; m < MOMENTS; m++) moments[m] = s[m].scene;
-        zt_exposure exposure = {moments, (double[]){0, 1}, (bool[]){false, false}, MOMENTS};
+        zt_exposure exposure = {.moments = moments,
+                                .times = (double[]){0, 1},
+                                .steps = (bool[]){false, false},
+                                .moment_count = MOMENTS};
         same_picture(&exposure, i, &sum);
     }
     assert_true(sum.shadow_avoided > 0);

@@ -26,12 +26,19 @@ static void show_scene(reel *r, uint64_t key, const zt_mesh *meshes) {
                                 .seed_fixed = draw_below(&d, 4) == 0};
     r->sampling.min = r->sampling.max = samples[draw_below(&d, 5)];
     r->precision = draw_below(&d, 3);
-    bool blurred = draw_below(&d, 5) == 0;
+    bool blurred = draw_below(&d, 5) == 0, stays[SCENE_OBJECTS_MAX];
+    /* Whether it is true decides what is kept, but not what is seen. */
+    for (int i = 0; i < SCENE_OBJECTS_MAX; i++) stays[i] = draw_below(&d, 4) > 0;
     for (int i = 0; i < SHOWN; i++) {
         int frame = i < 2 ? 0 : draw_below(&d, FRAMES);
         frame_of(moments, &base, key ^ UINT64_C(0x5eed), frame);
         zt_scene both[2] = {moments[0].scene, moments[1].scene};
-        zt_exposure exposure = {both, times, steps, blurred ? 2 : 1};
+        zt_exposure exposure = {.moments = both,
+                                .times = times,
+                                .steps = steps,
+                                .moment_count = blurred ? 2 : 1,
+                                .stays = stays};
+        r->fresh = i == SHOWN - 1;
         reel_expose(r, &exposure);
     }
 }

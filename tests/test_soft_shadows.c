@@ -216,7 +216,7 @@ static zt_exposure expose(zt_scene moments[2], const test_scene *a, const test_s
     static const double times[] = {0, 1};
     moments[0] = a->scene;
     moments[1] = b->scene;
-    return (zt_exposure){moments, times, steps, 2};
+    return (zt_exposure){.moments = moments, .times = times, .steps = steps, .moment_count = 2};
 }
 
 /* A point light that moves, brightens and changes its color gives the mean over time; where it

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+
 static void copy(void *own, const void *array, size_t element_size, int32_t count) {
     if (count) memcpy(own, array, element_size * (size_t)count);
 }
@@ -111,6 +113,23 @@ zt_status zt_animation_freeze_again(zt_scene *scene, const zt_animation *animati
     }
     keep_tori(scene);
     return result;
+}
+
+void zt_animation_stays(bool *stays, const zt_animation *animation) {
+    const zt_scene *rest = &animation->rest;
+    bool camera_stays = true;
+    for (int32_t i = 0; i < rest->object_count; i++) stays[i] = true;
+    for (int32_t i = 0; i < animation->track_count; i++) {
+        const zt_track *track = &animation->tracks[i];
+        if (track->property->owner >= ZT_OWNER_PLANE)
+            stays[track->index] = false;
+        else if (track->property->owner == ZT_OWNER_CAMERA)
+            camera_stays &= !zt_text_equal(track->property->name, "position");
+    }
+    for (int32_t i = 0; i < rest->object_count; i++) {
+        int32_t parent = rest->objects[i].parent;
+        stays[i] &= camera_stays && (parent < 0 || stays[parent]);
+    }
 }
 
 void zt_animation_free(zt_animation **animation) {

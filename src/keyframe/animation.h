@@ -71,6 +71,10 @@ struct zt_animation {
 zt_status zt_animation_freeze(zt_scene *scene, const zt_animation *animation, double time_s,
                               zt_arena *arena, zt_listener listener);
 
+/* Of each object of the scene at rest: it is at the same place, as seen from where the camera
+ * is, at all times; written to `stays`. */
+void zt_animation_stays(bool *stays, const zt_animation *animation);
+
 /* The same into the arrays of a scene that was frozen before, of the same animation. */
 zt_status zt_animation_freeze_again(zt_scene *scene, const zt_animation *animation,
                                     double time_s, zt_listener listener);

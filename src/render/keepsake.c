@@ -93,6 +93,7 @@ static void pass_outline(stream *s, zt_outline *o) {
     PASS_FLAGS(s, &o->ambient_moves, &o->blind, &o->faint);
     pass(s, &o->ambient, sizeof o->ambient);
     pass(s, &o->rest, sizeof o->rest);
+    pass(s, &o->order, sizeof o->order);
     pass(s, &o->brightest, sizeof o->brightest);
     for (int32_t i = 0; i < o->thing_count; i++) pass_thing(s, &o->things[i]);
     for (int32_t i = 0; i < o->lamp_count; i++) pass_lamp(s, &o->lamps[i]);

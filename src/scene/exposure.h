@@ -17,6 +17,9 @@ typedef struct zt_exposure {
     const double *times;     /* likewise: fractions, rising from 0 to 1; multiples of 1/4096 */
     const bool *steps; /* of moment i: what differs at the next one changes at once, halfway */
     int32_t moment_count; /* at least 1; 1: nothing moves, and times and steps are not read */
+    /* Of each object: it is at the same place, as seen from where the camera is, in all frames,
+     * so that what is made of it may be kept. NULL: of none is that known. */
+    const bool *stays;
 } zt_exposure;
 
 /* All moments are at multiples of this share of the opening. */

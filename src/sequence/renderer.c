@@ -30,6 +30,10 @@ static zt_status open_parts(zt_renderer *r, int thread_count) {
     ZT_TRY(zt_pool_open(&r->pool, thread_count));
     ZT_TRY(
         zt_meshes_open(&r->meshes, rest->meshes, rest->mesh_count, thread_count, r->listener));
+    bool *stays = ZT_PUSH(&r->run, bool, (size_t)rest->object_count);
+    if (!stays) return ZT_EMEMORY;
+    zt_animation_stays(stays, r->animation);
+    r->stays = stays;
     return zt_render_work_push(&r->work, &r->run, thread_count);
 }
 
@@ -111,6 +115,7 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     zt_arena_reset(&r->frame);
     ZT_TRY(zt_shutter_expose(&t->exposure, &t->division, r->animation, frame, r->format.height,
                              &r->frame, r->listener));
+    t->exposure.stays = r->stays;
     double frozen_s = zt_clock_s();
     ZT_TRY(
         zt_tracer_prepare(&t->ready, &t->exposure, r->precision,

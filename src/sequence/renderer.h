@@ -27,8 +27,9 @@ struct zt_renderer {
     zt_output_format format;
     zt_sampling sampling;
     zt_precision precision;
-    unsigned aovs; /* bits of zt_aov: the description's, and those that were asked for */
-    zt_hash held;  /* of what all meshes hold; zero until it is asked for */
+    unsigned aovs;     /* bits of zt_aov: the description's, and those that were asked for */
+    const bool *stays; /* as in zt_exposure */
+    zt_hash held;      /* of what all meshes hold; zero until it is asked for */
     zt_listener listener;
     zt_pool *pool;
     zt_meshes *meshes;

@@ -262,7 +262,8 @@ static zt_status write_exposure(zt_exposure *exposure, const opening *o) {
         times[i] = o->moments[i]->cell / ZT_TIME_CELLS;
         steps[i] = o->steps[i];
     }
-    *exposure = (zt_exposure){moments, times, steps, o->moment_count};
+    *exposure = (zt_exposure){
+        .moments = moments, .times = times, .steps = steps, .moment_count = o->moment_count};
     return ZT_OK;
 }
 

@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <zoetrope/status.h>
+
+#include "base/arena.h"
 #include "base/vec.h"
 #include "scene/scene.h"
 
@@ -60,10 +63,23 @@ typedef struct zt_extent {
     int32_t lamp_light;
 } zt_extent;
 
-zt_accuracy zt_accuracy_judge(const zt_extent *extents, int32_t count, const zt_scene *scene,
-                              zt_pixel pixel);
+/* Surfaces that may lie on each other, in the order in which to look for them. */
+typedef struct zt_twins zt_twins;
+
+/* Of extents that stay where they are as long; in the arena. ZT_EMEMORY. */
+zt_status zt_twins_make(zt_twins **twins, const zt_extent *extents, int32_t count,
+                        zt_arena *arena);
 
 /* Whether two surfaces lie on each other: as near as `most` of their size. */
-bool zt_accuracy_twins(const zt_extent *extents, int32_t count, double most);
+bool zt_twins_within(const zt_twins *twins, double most);
+
+/* Of all primitives of a tracer. */
+typedef struct zt_extents {
+    const zt_extent *all;
+    int32_t count;
+    zt_twins *twins;
+} zt_extents;
+
+zt_accuracy zt_accuracy_judge(const zt_extents *extents, const zt_scene *scene, zt_pixel pixel);
 
 #endif

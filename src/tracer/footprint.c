@@ -117,6 +117,7 @@ zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
     d->all = !zt_hash_equal(before->rest, now->rest) || (before->blind && !now->blind) ||
              (before->faint && now->brightest > before->brightest);
     if (d->all) return ZT_OK;
+    d->order = !zt_hash_equal(before->order, now->order);
     size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
     d->places = ZT_PUSH(arena, zt_difference, most);
     if (!d->places) return ZT_EMEMORY;
@@ -203,7 +204,7 @@ bool zt_footprint_touched(const zt_footprint *f, const zt_differences *d) {
     if (d->all || f->restless || (d->light && f->steps[0].ends)) return true;
     if ((d->things & f->met) || (d->drawn_lamps & f->faced) || (d->dimmed_lamps & f->lit))
         return true;
-    if (f->doubtful && d->place_count > 0) return true;
+    if (f->doubtful && (d->order || d->place_count > 0)) return true;
     for (int32_t i = 0; i < d->place_count; i++)
         if (place_touches(f, d, &d->places[i])) return true;
     return false;

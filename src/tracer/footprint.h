@@ -77,6 +77,7 @@ typedef struct zt_outline {
     zt_outline_lamp *lamps;   /* and for each lamp, in order */
     int32_t thing_count, lamp_count;
     zt_hash ambient, rest; /* rest: all that concerns all rays */
+    zt_hash order;         /* which things share a hierarchy, that asks them in its own order */
     bool ambient_moves;
     bool blind; /* mirrored rays were left out, since they meet nothing; */
     bool faint; /* or where they are too faint to count, given how bright points are at most */
@@ -102,6 +103,7 @@ typedef struct zt_differences {
     bool all;        /* nothing can be said of anything */
     bool light;      /* what light there is at any point */
     bool shifted;    /* things have other numbers */
+    bool order;      /* hierarchies are of other things */
     uint64_t things; /* that went, moved, or look otherwise */
     uint64_t drawn_lamps, dimmed_lamps;
     zt_difference *places;

@@ -30,7 +30,7 @@ static inline void zt_tread_rays(zt_footprint *f, int32_t depth, const zt_bundle
     zt_hold_box(&step->directions, &bundle->directions, !step->there);
     step->there = true;
     int32_t close = 0, gone = 0;
-    for (int i = 0; tracer->crowd && i < rays->count; i++) close |= rays->close[i];
+    for (int i = 0; tracer->crowd_count > 0 && i < rays->count; i++) close |= rays->close[i];
     for (int i = 0; i < rays->count; i++) gone |= rays->hit[i] < 0;
     f->doubtful |= (close & CLOSE_SEVERAL) != 0;
     step->leaves |= gone != 0;

@@ -114,7 +114,7 @@ bool ZT_KERNEL_NAME(zt_may_meet)(zt_bundle *b, const zt_tracer *tracer) {
         int32_t index = tracer->single[b->passed_count];
         if (may_meet(b, &tracer->primitives[index], index)) return true;
     }
-    return tracer->crowd != NULL;
+    return tracer->crowd_count > 0;
 }
 
 void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
@@ -124,7 +124,7 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
     }
-    if (tracer->crowd) memset(rays->close, 0, sizeof rays->close);
+    if (tracer->crowd_count > 0) memset(rays->close, 0, sizeof rays->close);
     for (int32_t k = 0; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
@@ -134,7 +134,7 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
         else
             nearest_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
     }
-    if (tracer->placed_count > 0 || tracer->crowd)
+    if (tracer->placed_count > 0 || tracer->crowd_count > 0)
         ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer, kind);
 }
 
@@ -150,6 +150,6 @@ void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
         else
             any_loops[p->kind](rays, rays->from, p, index, 0, padded);
     }
-    if (tracer->placed_count > 0 || tracer->crowd)
+    if (tracer->placed_count > 0 || tracer->crowd_count > 0)
         ZT_KERNEL_NAME(zt_search_any)(rays, bundle, tracer);
 }

@@ -17,9 +17,9 @@ extern KERNELS(avx512);
 #endif
 
 /* Compiled by ZT_REAL_NAME in tracer/prepare.c, which is of one precision at a time. */
-typedef zt_status prepare(zt_tracer **tracer, zt_extent **extents, int32_t *extent_count,
-                          const zt_exposure *exposure, const zt_needs *needs, bool everything,
-                          zt_meshes *meshes, zt_arena *arena);
+typedef zt_status prepare(zt_tracer **tracer, zt_extents *extents, const zt_exposure *exposure,
+                          const zt_needs *needs, bool everything, zt_meshes *meshes,
+                          zt_arena *arena);
 prepare zt_prepare_single, zt_prepare_double;
 typedef zt_status prepare_search(zt_tracer *tracer, zt_meshes *meshes, zt_arena *arena);
 prepare_search zt_prepare_search_single, zt_prepare_search_double;
@@ -55,24 +55,21 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
                             zt_precision precision, zt_pixel pixel, zt_meshes *meshes,
                             zt_arena *arena) {
     zt_tracer *tracer = NULL;
-    zt_extent *extents;
-    int32_t count;
+    zt_extents extents;
     const bool all = wants_everything();
     *ready = (zt_ready){.precision = precision};
     ZT_TRY(zt_needs_find(&ready->needs, exposure, all, arena));
     const zt_needs *needs = &ready->needs;
     if (precision != ZT_PRECISION_DOUBLE) {
-        ZT_TRY(
-            zt_prepare_single(&tracer, &extents, &count, exposure, needs, all, meshes, arena));
-        ready->accuracy = zt_accuracy_judge(extents, count, exposure->moments, pixel);
+        ZT_TRY(zt_prepare_single(&tracer, &extents, exposure, needs, all, meshes, arena));
+        ready->accuracy = zt_accuracy_judge(&extents, exposure->moments, pixel);
         if (precision == ZT_PRECISION_AUTO)
             ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
                                                                           : ZT_PRECISION_DOUBLE;
     }
     bool single = ready->precision == ZT_PRECISION_SINGLE;
     if (!single)
-        ZT_TRY(
-            zt_prepare_double(&tracer, &extents, &count, exposure, needs, all, meshes, arena));
+        ZT_TRY(zt_prepare_double(&tracer, &extents, exposure, needs, all, meshes, arena));
     ZT_TRY(single ? zt_prepare_search_single(tracer, meshes, arena)
                   : zt_prepare_search_double(tracer, meshes, arena));
     single ? zt_prepare_ready_single(ready, tracer) : zt_prepare_ready_double(ready, tracer);

@@ -2,14 +2,18 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/bits.h"
 #include "base/diag.h"
 
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
     zt_built_mesh *built; /* one for each mesh */
-    zt_bvh *crowd;
+    zt_bvh *crowds[2];    /* of what does not stay; of what does */
+    zt_bvh_box *stayed;   /* over which boxes the latter is */
+    int32_t stayed_count;
 };
 
 zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_count,
@@ -37,7 +41,8 @@ void zt_meshes_close(zt_meshes **slot) {
         zt_clusters_free(&m->built[i].clusters);
         free(m->built[i].hull);
     }
-    zt_bvh_free(&m->crowd);
+    for (int i = 0; i < 2; i++) zt_bvh_free(&m->crowds[i]);
+    free(m->stayed);
     zt_bvh_close(&m->builder);
     free(m->built);
     free(m);
@@ -79,9 +84,17 @@ zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t ind
     return b->bvh ? ZT_OK : build_bvh(b, m->builder);
 }
 
-zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, const zt_bvh_box *boxes,
-                          int32_t count) {
-    ZT_TRY(zt_bvh_of_boxes(&m->crowd, m->builder, boxes, count));
-    *crowd = m->crowd;
+zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, bool stays,
+                          const zt_bvh_box *boxes, int32_t count) {
+    const size_t size = (size_t)count * sizeof *boxes;
+    const bool same = stays && m->crowds[1] && m->stayed_count == count &&
+                      zt_bits_equal(m->stayed, boxes, size);
+    if (!same) ZT_TRY(zt_bvh_of_boxes(&m->crowds[stays], m->builder, boxes, count));
+    *crowd = m->crowds[stays];
+    if (same || !stays) return ZT_OK;
+    zt_bvh_box *stayed = realloc(m->stayed, size);
+    m->stayed_count = stayed ? count : 0;
+    if (!stayed) return ZT_EMEMORY;
+    m->stayed = memcpy(stayed, boxes, size);
     return ZT_OK;
 }

@@ -1,5 +1,5 @@
 /* Triangle meshes, and what makes them fast to hit: the run owns a hierarchy and a hull for
- * each mesh, in the mesh's own space, built when first needed, and the hierarchy of what a
+ * each mesh, in the mesh's own space, built when first needed, and hierarchies of what a
  * frame has many of. */
 #ifndef ZT_TRACER_MESHES_H
 #define ZT_TRACER_MESHES_H
@@ -32,8 +32,9 @@ typedef struct zt_built_mesh {
 } zt_built_mesh;
 zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *meshes, int32_t mesh);
 
-/* The hierarchy over boxes that serves one frame. */
-zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *meshes, const zt_bvh_box *boxes,
-                          int32_t count);
+/* A hierarchy over boxes: one that serves one frame; or, of what `stays`, one that is kept for
+ * as long as the boxes are the same. */
+zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *meshes, bool stays,
+                          const zt_bvh_box *boxes, int32_t count);
 
 #endif

@@ -178,8 +178,19 @@ static zt_hash rest_of(const zt_tracer *tracer) {
     put(&n, sizeof(real));
     put(&n, (double)tracer->tie);
     put(&n, scene->reflection_depth);
-    put(&n, tracer->crowd != NULL);
+    put(&n, tracer->crowd_count > 0);
     return hash_of(&n);
+}
+
+/* Which things share a hierarchy. */
+static zt_hash order_of(const zt_tracer *tracer) {
+    zt_hash order = {0, 0};
+    for (int i = 0; i < tracer->crowd_count; i++) {
+        const zt_crowd *c = &tracer->crowds[i];
+        order = joined(order,
+                       zt_hash_bytes(c->primitives, (size_t)c->count * sizeof *c->primitives));
+    }
+    return order;
 }
 
 static zt_hash ambient_of(const zt_tracer *tracer, zt_hash times) {
@@ -208,6 +219,7 @@ zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
                     .ambient = ambient_of(tracer, times),
                     .ambient_moves = tracer->ambients != NULL,
                     .rest = rest_of(tracer),
+                    .order = order_of(tracer),
                     .blind = is_blind(tracer),
                     .brightest = (double)tracer->brightest};
     o.faint = tracer->faint_depth < tracer->reflection_depth;

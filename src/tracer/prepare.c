@@ -190,36 +190,63 @@ static zt_bvh_box outside(const zt_primitive *p, real crowd_size) {
     return box;
 }
 
+/* Those that stay have a hierarchy of their own, so that it serves many frames, where they are
+ * many. */
+enum { OTHERS, STAYING, UNBOUNDED, GROUP_COUNT };
+
+static int group_of(const zt_tracer *tracer, int32_t index) {
+    const bool *stays = tracer->exposure->stays;
+    const zt_primitive *p = &tracer->primitives[index];
+    return p->kind == ZT_PRIMITIVE_PLANE ? UNBOUNDED
+           : stays && stays[p->object]   ? STAYING
+                                         : OTHERS;
+}
+
+static zt_status make_crowd(zt_tracer *tracer, const int32_t *primitives, int32_t count,
+                            bool stays, zt_meshes *meshes, zt_arena *arena) {
+    zt_crowd *crowd = &tracer->crowds[tracer->crowd_count++];
+    zt_bvh_box *boxes = ZT_PUSH(arena, zt_bvh_box, (size_t)count);
+    if (!boxes) return ZT_EMEMORY;
+    zt_box all = tracer->primitives[primitives[0]].box;
+    for (int32_t i = 1; i < count; i++) {
+        const zt_box *box = &tracer->primitives[primitives[i]].box;
+        all = (zt_box){min3(all.low, box->low), max3(all.high, box->high)};
+    }
+    for (int32_t i = 0; i < count; i++)
+        boxes[i] = outside(&tracer->primitives[primitives[i]], zt_box_size(&all));
+    *crowd = (zt_crowd){.primitives = primitives, .count = count, .box = all};
+    return zt_meshes_crowd(&crowd->bvh, meshes, stays, boxes, count);
+}
+
 zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
                                           zt_arena *arena) {
     if (!tracer->everything) ZT_TRY(ZT_REAL_NAME(zt_prepare_reach)(tracer, arena));
-    size_t count = (size_t)tracer->primitive_count;
-    int32_t *single = ZT_PUSH(arena, int32_t, count), *crowd = ZT_PUSH(arena, int32_t, count);
-    if (!single || !crowd) return ZT_EMEMORY;
-    int32_t single_count = 0, crowd_count = 0;
-    for (int32_t i = 0; i < tracer->primitive_count; i++)
-        if (tracer->primitives[i].kind != ZT_PRIMITIVE_PLANE) crowd[crowd_count++] = i;
     /* Without Embree there is no hierarchy; the bits are the same. */
-    bool many =
-        crowd_count > SINGLE_MAX && zt_module_is_built("embree", NULL, (zt_listener){0});
-    for (int32_t i = 0; i < tracer->primitive_count; i++)
-        if (!many || tracer->primitives[i].kind == ZT_PRIMITIVE_PLANE)
-            single[single_count++] = i;
+    const bool built = zt_module_is_built("embree", NULL, (zt_listener){0});
+    int32_t counts[GROUP_COUNT] = {0};
+    for (int32_t i = 0; i < tracer->primitive_count; i++) counts[group_of(tracer, i)]++;
+    const bool apart = counts[STAYING] > SINGLE_MAX;
+    if (!apart) counts[OTHERS] += counts[STAYING];
+    const size_t room = (size_t)tracer->primitive_count;
+    int32_t *single = ZT_PUSH(arena, int32_t, room);
+    int32_t *members[ZT_CROWDS_MAX] = {ZT_PUSH(arena, int32_t, room),
+                                       ZT_PUSH(arena, int32_t, room)};
+    if (!single || !members[OTHERS] || !members[STAYING]) return ZT_EMEMORY;
+    int32_t found[ZT_CROWDS_MAX] = {0, 0};
     tracer->single = single;
-    tracer->single_count = single_count;
-    tracer->crowd_primitives = crowd;
-    if (!many) return ZT_OK;
-    zt_bvh_box *boxes = ZT_PUSH(arena, zt_bvh_box, (size_t)crowd_count);
-    if (!boxes) return ZT_EMEMORY;
-    zt_box *all = &tracer->crowd_box;
-    *all = tracer->primitives[crowd[0]].box;
-    for (int32_t i = 1; i < crowd_count; i++) {
-        const zt_box *box = &tracer->primitives[crowd[i]].box;
-        *all = (zt_box){min3(all->low, box->low), max3(all->high, box->high)};
+    for (int32_t i = 0; i < tracer->primitive_count; i++) {
+        int group = group_of(tracer, i);
+        if (group == STAYING && !apart) group = OTHERS;
+        if (group == UNBOUNDED || !built || counts[group] <= SINGLE_MAX)
+            single[tracer->single_count++] = i;
+        else
+            members[group][found[group]++] = i;
     }
-    for (int32_t i = 0; i < crowd_count; i++)
-        boxes[i] = outside(&tracer->primitives[crowd[i]], zt_box_size(all));
-    return zt_meshes_crowd(&tracer->crowd, meshes, boxes, crowd_count);
+    for (int group = OTHERS; group <= STAYING; group++)
+        if (found[group] > 0)
+            ZT_TRY(make_crowd(tracer, members[group], found[group], group == STAYING, meshes,
+                              arena));
+    return ZT_OK;
 }
 
 static size_t count_meshes(const zt_scene *scene) {
@@ -244,7 +271,7 @@ static bool lights_move(const zt_tracer *tracer) {
     return moves;
 }
 
-zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t *extent_count,
+zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extents *extents,
                                    const zt_exposure *exposure, const zt_needs *needs,
                                    bool everything, zt_meshes *meshes, zt_arena *arena) {
     const zt_scene *scene = exposure->moments;
@@ -275,10 +302,10 @@ zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **out, zt_extent **extents, int32_t
     ZT_TRY(prepare_objects(&all, tracer, &course, meshes));
     tracer->moves |= lights_move(tracer);
     if (tracer->moves) ZT_TRY(zt_exposure_index(&tracer->moment_at, exposure, arena));
-    if (zt_accuracy_twins(all.extents, all.count, (double)TIE)) tracer->tie = TIE;
+    *extents = (zt_extents){.all = all.extents, .count = all.count};
+    ZT_TRY(zt_twins_make(&extents->twins, all.extents, all.count, arena));
+    if (zt_twins_within(extents->twins, (double)TIE)) tracer->tie = TIE;
     *out = tracer;
-    *extents = all.extents;
-    *extent_count = all.count;
     return ZT_OK;
 }
 

@@ -6,10 +6,9 @@
 
 /* Makes the tracer of a precision, and the extents of its primitives, in the arena. Things that
  * are degenerate have nothing to hit and are left out. */
-zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extent **extents,
-                                   int32_t *extent_count, const zt_exposure *exposure,
-                                   const zt_needs *needs, bool everything, zt_meshes *meshes,
-                                   zt_arena *arena);
+zt_status ZT_REAL_NAME(zt_prepare)(zt_tracer **tracer, zt_extents *extents,
+                                   const zt_exposure *exposure, const zt_needs *needs,
+                                   bool everything, zt_meshes *meshes, zt_arena *arena);
 
 /* Tells what those who send rays must know of a tracer. */
 void ZT_REAL_NAME(zt_prepare_ready)(zt_ready *ready, const zt_tracer *tracer);

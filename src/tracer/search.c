@@ -318,6 +318,7 @@ static void begin_search(search *s, zt_batch *rays, const zt_tracer *tracer, int
 typedef struct crowd_search {
     zt_batch *rays;
     const zt_tracer *tracer;
+    const zt_crowd *crowd;
     bool any;
     zt_bvh_kind kind;
     real begin[ZT_BATCH]; /* where, along each ray, the hierarchy's begins */
@@ -329,7 +330,7 @@ typedef struct crowd_search {
 static uint32_t visit_primitive(void *user, int32_t box, int first, uint32_t set) {
     crowd_search *c = user;
     zt_batch *rays = c->rays;
-    int32_t index = c->tracer->crowd_primitives[box];
+    int32_t index = c->crowd->primitives[box];
     const zt_primitive *p = &c->tracer->primitives[index];
     if (p->kind == ZT_PRIMITIVE_MESH) {
         search s;
@@ -358,20 +359,21 @@ static inline real enter_box(const zt_box *b, real ox, real oy, real oz, real dx
     return enter > 0 && enter < REAL_INFINITY ? enter : 0;
 }
 
-static void search_crowd(zt_batch *rays, const zt_tracer *tracer, bool any, zt_bvh_kind kind) {
+static void search_crowd(zt_batch *rays, const zt_tracer *tracer, const zt_crowd *crowd,
+                         bool any, zt_bvh_kind kind) {
     crowd_search c;
     c.rays = rays;
     c.tracer = tracer;
+    c.crowd = crowd;
     c.any = any;
     c.kind = kind;
     const zt_origins *from = rays->from;
-    const real before = BEFORE * zt_box_size(&tracer->crowd_box);
+    const real before = BEFORE * zt_box_size(&crowd->box);
     c.packed.count = rays->count;
     for (int i = 0; i < rays->count; i++) {
         real ox = from->x[i], oy = from->y[i], oz = from->z[i];
         real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        real begin =
-            real_max(enter_box(&tracer->crowd_box, ox, oy, oz, dx, dy, dz) - before, 0);
+        real begin = real_max(enter_box(&crowd->box, ox, oy, oz, dx, dy, dz) - before, 0);
         bool looks = !any || (rays->hit[i] < 0 && rays->t[i] > 0);
         c.begin[i] = begin;
         c.packed.ox[i] = (float)(ox + begin * dx);
@@ -382,7 +384,7 @@ static void search_crowd(zt_batch *rays, const zt_tracer *tracer, bool any, zt_b
         c.packed.dz[i] = (float)dz;
         c.packed.far[i] = looks ? (float)(rays->t[i] - begin) * LOOK_FURTHER : -1;
     }
-    zt_bvh_look(tracer->crowd, &c.packed, kind, visit_primitive, &c);
+    zt_bvh_look(crowd->bvh, &c.packed, kind, visit_primitive, &c);
 }
 
 /* ---- both -----------------------------------------------------------------------------------
@@ -390,10 +392,8 @@ static void search_crowd(zt_batch *rays, const zt_tracer *tracer, bool any, zt_b
 
 static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer *tracer,
                        bool any, zt_bvh_kind kind) {
-    if (tracer->crowd) {
-        search_crowd(rays, tracer, any, kind);
-        return;
-    }
+    for (int i = 0; i < tracer->crowd_count; i++)
+        search_crowd(rays, tracer, &tracer->crowds[i], any, kind);
     for (int32_t k = 0; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];

@@ -113,6 +113,16 @@ typedef struct zt_reach {
     int32_t blocker_count;
 } zt_reach;
 
+/* Primitives that are asked through a hierarchy over their boxes: of those that stay, which is
+ * kept from frame to frame, and of the others. */
+enum { ZT_CROWDS_MAX = 2 };
+typedef struct zt_crowd {
+    const int32_t *primitives;
+    int32_t count;
+    const zt_bvh *bvh;
+    zt_box box; /* around them all */
+} zt_crowd;
+
 /* What of a primitive's looks changes (tracer/motion.h). */
 typedef struct zt_change zt_change;
 
@@ -122,9 +132,8 @@ struct zt_tracer {
     int32_t primitive_count;
     const int32_t *single; /* the primitives that are asked one by one, in order */
     int32_t single_count;
-    const int32_t *crowd_primitives; /* those asked through a hierarchy over their boxes */
-    const zt_bvh *crowd;             /* NULL where there are few */
-    zt_box crowd_box;                /* around them all */
+    zt_crowd crowds[ZT_CROWDS_MAX];
+    int crowd_count; /* 0 where there are few things */
     const zt_placed_mesh *placed;
     int32_t placed_count;
     const zt_weave *weaves;
