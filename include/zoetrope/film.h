@@ -26,6 +26,8 @@ typedef struct zt_film_order {
                                  processes share the target; 0, 0: all */
     zt_budget budget;         /* zeros: none */
     int64_t verify;           /* how many frames that are there are rendered again */
+    int64_t keep_bytes;       /* that frames which are kept for later edits may take; 0: none
+                                 are, and those of earlier runs go */
     bool overwrites;          /* whatever is there, and whatever is known of it */
     bool forgets; /* the target is not held, and nothing is remembered; overwrites */
     const char *description, *title; /* the description's file, and what the film is called */
@@ -47,6 +49,10 @@ typedef struct zt_film_result {
  * (zt_manifest_read()), so that the same order goes on where it was stopped or failed, whatever
  * ended it. What shows the same as another frame is not rendered twice. Checksums (.hash) are
  * made anew, and neither held nor noted; but what a budget chose is, anew.
+ *
+ * Frames that took long are kept as they were rendered, in TARGET.keepsakes: when the
+ * description has been edited, of a frame that is rendered again only those tiles are that the
+ * edit can affect. Not with a budget, and not where the renderer reuses nothing.
  *
  * Parts are divided by what the frames took before, where all of that is known, else evenly;
  * all processes that render parts of the same film come to the same division, which is noted.

@@ -23,7 +23,11 @@ typedef struct zt_ray_stats {
 typedef struct zt_stats {
     int64_t frames;
     zt_ray_stats primary, shadow, mirror;
-    int64_t tiles, copied_tiles; /* copied from the frame before */
+    int64_t tiles, copied_tiles; /* copied from the frame before, or from before an edit */
+    int64_t found, found_tiles,
+        found_copied;                  /* frames of which an earlier run's was there; their
+                                          tiles, and how many of those were copied */
+    int64_t keepsakes, keepsake_bytes; /* that are there for later edits */
     double freeze_s, prepare_s, render_s;
 } zt_stats;
 

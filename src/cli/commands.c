@@ -16,7 +16,7 @@
 #define FINISHED                                                                               \
     (ONE_FRAME | BIT(ERROR) | BIT(QUALITY) | BIT(FILTER) | BIT(TIME) | BIT(TIME_PER_FRAME) |   \
      BIT(MANIFEST) | BIT(AOVS))
-#define REUSE (BIT(NO_REUSE) | BIT(CHECK_REUSE))
+#define REUSE (BIT(NO_REUSE) | BIT(CHECK_REUSE) | BIT(KEEP))
 
 static const char images[] =
     "  film.mp4         a movie, H.264; also .mov .mkv, .webm (VP9), .gif, .apng\n"
@@ -113,6 +113,10 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                             "copy nothing from the frame before, where it stays the same"},
     [ZT_OPTION_CHECK_REUSE] = {"check-reuse", 0, NULL,
                                "render frames both ways, and fail where a bit differs"},
+    [ZT_OPTION_KEEP] =
+        {"keep", 0, "2GB",
+         "how much of the disk frames may take that are kept for later edits; 0: "
+         "none"},
     [ZT_OPTION_AOVS] = {"aovs", 0, "Z,N",
                         "channels that .exr images have besides R G B A, or all"},
     [ZT_OPTION_VIEW] = {"view", 0, "filmic",

@@ -7,7 +7,7 @@
 
 #include "cli/values.h"
 
-enum { THREADS_MAX = 1024, VERIFY_MAX = 1000000 };
+enum { THREADS_MAX = 1024, VERIFY_MAX = 1000000, KEEP_BYTES = 2000000000 };
 
 /* The arguments, sorted but not yet understood. */
 typedef struct arguments {
@@ -270,7 +270,8 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
                *time = values[ZT_OPTION_TIME], *frame_time = values[ZT_OPTION_TIME_PER_FRAME],
                *pixel = values[ZT_OPTION_PIXEL], *sample = values[ZT_OPTION_SAMPLE],
                *chunk = values[ZT_OPTION_CHUNK], *rate = values[ZT_OPTION_RATE],
-               *verify = values[ZT_OPTION_VERIFY], *aovs = values[ZT_OPTION_AOVS],
+               *verify = values[ZT_OPTION_VERIFY], *keep = values[ZT_OPTION_KEEP],
+               *aovs = values[ZT_OPTION_AOVS],
                *frame =
                    command == &zt_commands[ZT_COMMAND_EXPLAIN] ? values[ZT_OPTION_FRAME] : NULL;
     zt_render_settings *settings = &options->settings;
@@ -285,6 +286,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
     options->replays = values[ZT_OPTION_PIXEL] != NULL;
     options->filters = values[ZT_OPTION_FILTERS] != NULL;
     options->sample = -1;
+    options->keep_bytes = KEEP_BYTES;
     return fit_together(values, report) &&
            (!time ||
             zt_value_duration(&options->budget.film_s, ZT_OPTION_TIME, time, report)) &&
@@ -297,6 +299,7 @@ static bool read_values(zt_options *options, const arguments *sorted, zt_report 
            (!chunk || zt_value_part(&options->part, &options->part_count, chunk, report)) &&
            (!verify ||
             zt_value_count(&options->verify, ZT_OPTION_VERIFY, verify, VERIFY_MAX, report)) &&
+           (!keep || zt_value_bytes(&options->keep_bytes, ZT_OPTION_KEEP, keep, report)) &&
            (!aovs || zt_value_aovs(&settings->aovs, aovs, report)) &&
            set_view(options, values[ZT_OPTION_VIEW], report) &&
            (!rate || zt_value_rate(&options->rate, rate, report)) &&

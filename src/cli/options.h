@@ -32,6 +32,7 @@ typedef struct zt_options {
     zt_render_settings settings; /* zero where not given */
     zt_budget budget;            /* likewise */
     const char *manifest;        /* to go by, or NULL */
+    int64_t keep_bytes;          /* as in zt_film_order */
     int verify;                  /* how many of the images that are there; 0: none */
     const char *view;            /* a zt_view's name, or NULL */
     zt_rate rate;                /* of encode; zeros: as the images say */

@@ -57,6 +57,17 @@ static void print_libraries(void) {
     }
 }
 
+/* What earlier runs had kept, and what there is for later ones. */
+static void print_keepsakes(const zt_stats *s) {
+    if (s->found == 0 && s->keepsakes == 0) return;
+    printf("%-*s ", LABEL_WIDTH, "keepsakes");
+    if (s->found > 0)
+        printf("of %" PRId64 " frames as they were before: %.3g %% of their tiles copied; ",
+               s->found, 100. * (double)s->found_copied / (double)s->found_tiles);
+    printf("%" PRId64 " in %.3g GB for later edits\n", s->keepsakes,
+           1e-9 * (double)s->keepsake_bytes);
+}
+
 void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, double wall_s) {
     zt_stats s = zt_renderer_stats(renderer);
     print_frames(result);
@@ -69,6 +80,7 @@ void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, d
     print_number(s.tiles);
     print_share(s.copied_tiles, s.tiles);
     putchar('\n');
+    print_keepsakes(&s);
     print_libraries();
     double stages_s = s.freeze_s + s.prepare_s + s.render_s;
     printf("%-*s freeze %.3g s, prepare %.3g s, render %.3g s, all else %.3g s\n", LABEL_WIDTH,

@@ -84,22 +84,44 @@ bool zt_value_view(const char *text, zt_report *report) {
     return false;
 }
 
-bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_report *report) {
-    static const struct {
-        const char *name;
-        double seconds;
-    } units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+typedef struct unit {
+    const char *name;
+    double of;
+} unit;
+
+/* A number and one of the units, which end with one without a name, maybe with blanks between
+ * the two. */
+static bool read_quantity(double *quantity, const char *text, const unit *units) {
     size_t length = strspn(text, "0123456789.");
     char *end;
     double number = strtod(text, &end);
-    const char *unit = text + length + strspn(text + length, " ");
-    for (int i = 0; i < 4 && length > 0 && end == text + length; i++)
-        if (strcmp(unit, units[i].name) == 0) *seconds = number * units[i].seconds;
-    if (*seconds > 0 && *seconds < 1e10) return true;
+    const char *name = text + length + strspn(text + length, " ");
+    if (length == 0 || end != text + length) return false;
+    while (units->name && strcmp(name, units->name) != 0) units++;
+    *quantity = number * units->of;
+    return units->name;
+}
+
+bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_report *report) {
+    static const unit units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}, {NULL, 0}};
+    if (read_quantity(seconds, text, units) && *seconds > 0 && *seconds < 1e10) return true;
     zt_report_say(report, ZT_ERROR,
                   "--%s %s: must be a time, such as 500 ms, 2 s, 20 min or 8 h",
                   zt_options_known[option].name, text);
     return false;
+}
+
+bool zt_value_bytes(int64_t *bytes, zt_option option, const char *text, zt_report *report) {
+    static const unit units[] = {{"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}, {NULL, 0}};
+    double number = 0;
+    bool good = strcmp(text, "0") == 0 ||
+                (read_quantity(&number, text, units) && number >= 0 && number < 1e15);
+    if (!good)
+        zt_report_say(report, ZT_ERROR,
+                      "--%s %s: must be so many bytes, such as 500 MB or 2GB, or 0",
+                      zt_options_known[option].name, text);
+    *bytes = (int64_t)number;
+    return good;
 }
 
 /* Two whole numbers up to `most`, and nothing but the mark between them. */

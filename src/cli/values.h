@@ -39,6 +39,9 @@ bool zt_value_view(const char *text, zt_report *report);
 /* "2 s", "1.5 min": seconds. */
 bool zt_value_duration(double *seconds, zt_option option, const char *text, zt_report *report);
 
+/* "2GB", "500 MB", "0": bytes. */
+bool zt_value_bytes(int64_t *bytes, zt_option option, const char *text, zt_report *report);
+
 /* "200,120": column and row. */
 bool zt_value_pixel(int *column, int *row, const char *text, zt_report *report);
 

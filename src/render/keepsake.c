@@ -105,15 +105,22 @@ static size_t footprint_count(const zt_picture *p) {
     return (size_t)zt_tile_count(p->width, p->height) * ZT_REUSE_PARTS;
 }
 
+/* Those of pictures that cover all without their A, which is 1. */
 static void pass_pixels(stream *s, zt_picture *p, bool opaque) {
-    const size_t count = pixel_count(p), size = (opaque ? 3 : 4) * sizeof(float);
+    enum { COLOR = 3 * sizeof(float) };
+    const size_t count = pixel_count(p);
+    float *restrict pixels = p->pixels;
     if (!opaque) {
-        pass(s, p->pixels, count * size);
-        return;
-    }
-    for (size_t i = 0; i < count && !s->lacking; i++) {
-        pass(s, p->pixels + 4 * i, size);
-        if (!s->to) p->pixels[4 * i + 3] = 1;
+        pass(s, pixels, count * 4 * sizeof *pixels);
+    } else if (s->to) {
+        for (size_t i = 0; i < count; i++) memcpy(s->to + i * COLOR, pixels + 4 * i, COLOR);
+        s->to += count * COLOR;
+    } else if (s->left == count * COLOR) {
+        for (size_t i = 0; i < count; i++) {
+            memcpy(pixels + 4 * i, s->from + i * COLOR, COLOR);
+            pixels[4 * i + 3] = 1;
+        }
+        s->left = 0;
     }
 }
 

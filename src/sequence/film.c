@@ -12,6 +12,7 @@
 #include "image/file.h"
 #include "sequence/again.h"
 #include "sequence/hold.h"
+#include "sequence/keepsakes.h"
 #include "sequence/manifest.h"
 #include "sequence/outway.h"
 #include "sequence/pacing.h"
@@ -124,7 +125,7 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
         made->budget = m->order->budget;
     }
     m->result->rendered++;
-    return ZT_OK;
+    return zt_keepsakes_take(r->keepsakes, frame, key);
 }
 
 /* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */
@@ -319,26 +320,9 @@ static zt_status push_lists(making *m) {
     return ZT_OK;
 }
 
-/* How outputs are written, in words for the manifest: "codec=h265 crf=20". NULL when out of
- * memory. */
-static char *print_wishes(const zt_output_option *wish) {
-    char *text = NULL;
-    size_t length;
-    FILE *stream = open_memstream(&text, &length);
-    if (!stream) return NULL;
-    for (const char *gap = ""; wish && wish->name; wish++) {
-        if (!wish->value) continue;
-        fprintf(stream, "%s%s=%s", gap, wish->name, wish->value);
-        gap = " ";
-    }
-    if (fclose(stream) == 0) return text;
-    free(text);
-    return NULL;
-}
-
 static zt_status open_notes(making *m) {
     const zt_renderer *r = m->renderer;
-    char *written = print_wishes(m->order->options);
+    char *written = zt_notes_wishes(m->order->options);
     if (!written) return ZT_EMEMORY;
     const zt_manifest_line header = {.kind = ZT_LINE_HEADER,
                                      .width = r->format.width,
@@ -369,6 +353,13 @@ static zt_status make(making *m) {
     ZT_TRY(take_part(m));
     if (m->frames.count == 0) return ZT_OK;
     ZT_TRY(push_lists(m));
+    const zt_keepsakes_order kept = {.target = o->target,
+                                     .frames = &m->frames,
+                                     .part_count = part_count,
+                                     .bytes_max = o->keep_bytes,
+                                     .anew = o->overwrites};
+    if (m->remembers && !m->timed)
+        ZT_TRY(zt_keepsakes_open(&m->renderer->keepsakes, &kept, m->renderer));
     return make_into_output(m);
 }
 
@@ -382,6 +373,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     m.remembers = !order->forgets && !ends_with_any(order->target, made_anew);
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;
     zt_status status = make(&m);
+    zt_keepsakes_close(&r->keepsakes);
     bool nothing = status != ZT_OK && result->rendered == 0;
     zt_status noted =
         zt_notes_close(&m.notes, nothing && (!m.remembers || zt_hold_alone(&m.hold)));

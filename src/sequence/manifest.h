@@ -92,6 +92,10 @@ typedef struct zt_notes {
     zt_listener listener;
 } zt_notes;
 
+/* How outputs are written, in words for the header: "codec=h265 crf=20". Of the caller to free;
+ * NULL when out of memory. */
+char *zt_notes_wishes(const zt_output_option *wish);
+
 /* Of TARGET.manifest; `header` is that of this run. With `anew` what is there is not read, and
  * is replaced as soon as there is something to note. `alone`: no other process uses it, so that
  * it may be written again without what does not count any more. */

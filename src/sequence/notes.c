@@ -30,6 +30,21 @@ static char *print(const zt_manifest_line *line, size_t *length) {
     return NULL;
 }
 
+char *zt_notes_wishes(const zt_output_option *wish) {
+    char *text = NULL;
+    size_t length;
+    FILE *stream = open_memstream(&text, &length);
+    if (!stream) return NULL;
+    for (const char *gap = ""; wish && wish->name; wish++) {
+        if (!wish->value) continue;
+        fprintf(stream, "%s%s=%s", gap, wish->name, wish->value);
+        gap = " ";
+    }
+    if (fclose(stream) == 0) return text;
+    free(text);
+    return NULL;
+}
+
 /* ---- without what does not count any more ---------------------------------------------------
  */
 

@@ -10,6 +10,7 @@
 #include "base/module.h"
 #include "keyframe/animation.h"
 #include "render/guides.h"
+#include "sequence/keepsakes.h"
 #include "sequence/pacing.h"
 #include "sequence/reuse_check.h"
 #include "sequence/shutter.h"
@@ -204,6 +205,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     ZT_TRY(find_matrices(r, &t, frame));
     ZT_TRY(prepare_passage(&t, r, image, frame));
     t.job.reuse = reuse;
+    if (reuse) zt_keepsakes_offer(r->keepsakes, &t.job, frame);
     t.job.stopped = watcher ? watcher->stopped : NULL;
     t.job.user = watcher ? watcher->user : NULL;
     double begun_s = zt_clock_s();

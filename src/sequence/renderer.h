@@ -20,7 +20,8 @@ typedef struct zt_frame_cost {
     int64_t tiles, tiles_copied;
 } zt_frame_cost;
 
-typedef struct zt_pacing zt_pacing; /* sequence/pacing.h */
+typedef struct zt_pacing zt_pacing;       /* sequence/pacing.h */
+typedef struct zt_keepsakes zt_keepsakes; /* sequence/keepsakes.h */
 
 struct zt_renderer {
     const zt_animation *animation;
@@ -35,7 +36,8 @@ struct zt_renderer {
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
     zt_render_work *work;
-    zt_reuse *reuse; /* of the frame before; NULL: nothing is copied */
+    zt_reuse *reuse;         /* of the frame before; NULL: nothing is copied */
+    zt_keepsakes *keepsakes; /* of earlier runs; NULL: none */
     bool checks_reuse;
     zt_stats stats;     /* of all frames */
     zt_frame_cost cost; /* of the last frame; and its camera's, as zt_image_info has them */
