@@ -192,7 +192,8 @@ const zt_codec zt_codecs[] = {
                 {"utvideo", "gbrap"},
                 {"ffv1", "gbrp16le"},
                 {"ffv1", "gbrap16le"}},
-     .settings = {{"pred", "mixed", NULL}, {"compression_level", "6", NULL}},
+     /* Level 6 takes two and a half times as long, for a thirteenth less. */
+     .settings = {{"pred", "mixed", NULL}, {"compression_level", "4", NULL}},
      .thread_count = 1,
      .lossless = true,
      .bits_a_pixel = 4},
