@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "image/stamps.h"
 #include "render/render.h"
 #include "scenes.h"
 
-enum { REEL_WIDTH = 80, REEL_HEIGHT = 64, REEL_TILES = 20 };
+enum { REEL_WIDTH = 80, REEL_HEIGHT = 64, REEL_TILES = 20, REEL_IMAGES = 3 };
 
 typedef struct reel {
     zt_arena run, frame;
@@ -17,7 +18,7 @@ typedef struct reel {
     zt_pool *pool;
     zt_render_work *work;
     zt_reuse *reuse;
-    zt_image *image, *alone;
+    zt_image *image, *alone, *images[REEL_IMAGES]; /* of which frames fill the next one */
     zt_precision precision;
     zt_sampling sampling;
     int64_t shown, copied; /* tiles; */
@@ -33,12 +34,16 @@ static inline void reel_open(reel *r, const zt_mesh *meshes, int mesh_count) {
     assert_int_equal(zt_pool_open(&r->pool, 2), ZT_OK);
     assert_int_equal(zt_render_work_push(&r->work, &r->run, 2), ZT_OK);
     assert_int_equal(zt_reuse_open(&r->reuse, true), ZT_OK);
-    assert_int_equal(zt_image_create(&r->image, REEL_WIDTH, REEL_HEIGHT), ZT_OK);
+    for (int i = 0; i < REEL_IMAGES; i++) {
+        assert_int_equal(zt_image_create(&r->images[i], REEL_WIDTH, REEL_HEIGHT), ZT_OK);
+        assert_int_equal(zt_image_add_stamps(r->images[i]), ZT_OK);
+    }
+    r->image = r->images[0];
     assert_int_equal(zt_image_create(&r->alone, REEL_WIDTH, REEL_HEIGHT), ZT_OK);
 }
 
 static inline void reel_close(reel *r) {
-    zt_image_free(&r->image);
+    for (int i = 0; i < REEL_IMAGES; i++) zt_image_free(&r->images[i]);
     zt_image_free(&r->alone);
     zt_reuse_close(&r->reuse);
     zt_render_work_close(r->work);
@@ -82,6 +87,18 @@ static inline void reel_prepare(zt_ready *ready, reel *r, const zt_exposure *exp
                      ZT_OK);
 }
 
+/* Of two images, tiles with equal stamps are the same. */
+static inline void reel_compare_stamps(const zt_image *a, const zt_image *b) {
+    const int columns = zt_stamp_tiles(REEL_WIDTH);
+    for (int y = 0; y < REEL_HEIGHT; y++)
+        for (int x = 0; x < REEL_WIDTH; x++) {
+            int tile = y / ZT_STAMP_SIDE * columns + x / ZT_STAMP_SIDE;
+            size_t at = 4 * ((size_t)y * REEL_WIDTH + (size_t)x);
+            if (a->stamps[tile] && a->stamps[tile] == b->stamps[tile])
+                assert_memory_equal(a->pixels + at, b->pixels + at, 4 * sizeof(float));
+        }
+}
+
 /* Shows an exposure both ways; returns how many tiles were copied. */
 static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     zt_ready ready;
@@ -99,7 +116,9 @@ static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
                          .place_key = r->sampling.seed,
                          .frame_key = reel_key(r, exposure)};
     assert_int_equal(zt_warp_prepare(&job.warp, &r->sampling, &r->frame), ZT_OK);
+    r->image = r->images[r->shown / REEL_TILES % REEL_IMAGES];
     assert_int_equal(zt_render(r->image, &count, &job, r->work, r->pool), ZT_OK);
+    for (int i = 0; i < REEL_IMAGES; i++) reel_compare_stamps(r->image, r->images[i]);
     job.reuse = NULL;
     zt_meshes *own = NULL;
     if (r->fresh) {

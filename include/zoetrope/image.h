@@ -67,6 +67,7 @@ typedef struct zt_image {
     zt_channel channels[ZT_IMAGE_CHANNELS_MAX];
     int channel_count;
     zt_image_info info;
+    uint64_t *stamps; /* of tiles, for those who make the same of the same again; NULL: none */
     struct zt_image_text *texts; /* the image's own: of one that was read, those of its info,
                                     and its channels' names; else NULL */
 } zt_image;

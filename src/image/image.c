@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "image/info.h"
+#include "image/stamps.h"
 
 typedef struct zt_image_text {
     struct zt_image_text *next;
@@ -47,6 +48,7 @@ void zt_image_free(zt_image **image) {
     if (!*image) return;
     for (int i = 0; i < (*image)->channel_count; i++) free((*image)->channels[i].values);
     free((*image)->pixels);
+    free((*image)->stamps);
     while ((*image)->texts) {
         zt_image_text *next = (*image)->texts->next;
         free((*image)->texts);
@@ -71,4 +73,17 @@ zt_status zt_image_add_channel(zt_image *image, const char *name) {
     if (!added->values) return ZT_EMEMORY;
     image->channel_count++;
     return ZT_OK;
+}
+
+static size_t stamp_count(const zt_image *image) {
+    return (size_t)zt_stamp_tiles(image->width) * (size_t)zt_stamp_tiles(image->height);
+}
+
+zt_status zt_image_add_stamps(zt_image *image) {
+    image->stamps = calloc(stamp_count(image), sizeof *image->stamps);
+    return image->stamps ? ZT_OK : ZT_EMEMORY;
+}
+
+void zt_image_forget_stamps(zt_image *image) {
+    if (image->stamps) memset(image->stamps, 0, stamp_count(image) * sizeof *image->stamps);
 }

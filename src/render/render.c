@@ -213,6 +213,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
     if (f->keeps)
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
                ZT_REUSE_PARTS * sizeof(zt_footprint));
+    if (f->image->stamps) f->image->stamps[index] = f->serial;
     bool done = true;
     for (int first = 0; first < ZT_BATCH && done; first += most) {
         int64_t left_out = own->count.left_out;
@@ -223,7 +224,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
     }
     own->rays.footprint = NULL;
-    if (f->keeps && done) zt_reuse_keep(f, x, y, area.width, area.height);
+    if (f->keeps && done) zt_reuse_keep(f, index, x, y, area.width, area.height);
     return done;
 }
 
@@ -279,6 +280,7 @@ static zt_status render_all(zt_frame *f) {
         zt_reuse_end(f, done);
         return done ? ZT_OK : ZT_ESTOPPED;
     }
+    zt_image_forget_stamps(f->image);
     zt_canvas *canvas = &f->work->canvas;
     ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height,
                           zt_warp_is_signed(job->warp)));
@@ -303,7 +305,8 @@ zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job
                   .pool = pool,
                   .tile_columns = zt_tile_columns(image->width),
                   .tile_count = tile_count,
-                  .run = run_length(tile_count, thread_count)};
+                  .run = run_length(tile_count, thread_count),
+                  .serial = job->reuse ? ++job->reuse->serial : 0};
     for (int i = 0; i < thread_count; i++) work->threads[i].count = (zt_render_count){0};
     zt_status status = render_all(&f);
     *count = (zt_render_count){

@@ -47,6 +47,7 @@ void zt_reuse_close(zt_reuse **slot) {
     zt_picture_close(&r->last);
     zt_arena_free(&r->spare);
     free(r->from);
+    free(r->stamps);
     free(r);
     *slot = NULL;
 }
@@ -115,8 +116,10 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
     zt_picture *last = &r->last;
     if (last->width != f->image->width || last->height != f->image->height) {
         uint8_t *from = realloc(r->from, (size_t)f->tile_count);
-        if (!from) return ZT_EMEMORY;
-        r->from = from;
+        uint64_t *stamps = realloc(r->stamps, (size_t)f->tile_count * sizeof *stamps);
+        if (from) r->from = from;
+        if (stamps) r->stamps = stamps;
+        if (!from || !stamps) return ZT_EMEMORY;
     }
     ZT_TRY(zt_picture_open(last, f->image->width, f->image->height));
     memset(r->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
@@ -213,11 +216,15 @@ static size_t place_of(const zt_frame *f, int left, int y) {
 void zt_reuse_copy(zt_frame *f, int tile, int left, int top, int width, int height) {
     const zt_reuse *r = f->job->reuse;
     const zt_picture *last = &r->last, *from = last;
+    uint64_t *stamps = f->image->stamps;
     if (r->from[tile] == ZT_TILE_KEPT) {
+        r->stamps[tile] = f->serial;
         from = r->kept;
         memcpy(zt_reuse_footprint(r, tile, 0), &from->footprints[tile * ZT_REUSE_PARTS],
                ZT_REUSE_PARTS * sizeof *from->footprints);
     }
+    if (stamps && stamps[tile] == r->stamps[tile]) return;
+    if (stamps) stamps[tile] = r->stamps[tile];
     for (int y = top; y < top + height; y++) {
         size_t at = place_of(f, left, y);
         stream(f->image->pixels + at, from->pixels + at, width);
@@ -226,7 +233,8 @@ void zt_reuse_copy(zt_frame *f, int tile, int left, int top, int width, int heig
     }
 }
 
-void zt_reuse_keep(zt_frame *f, int left, int top, int width, int height) {
+void zt_reuse_keep(zt_frame *f, int tile, int left, int top, int width, int height) {
+    f->job->reuse->stamps[tile] = f->serial;
     for (int y = top; y < top + height; y++) {
         size_t at = place_of(f, left, y);
         memcpy(f->job->reuse->last.pixels + at, f->image->pixels + at,

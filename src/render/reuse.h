@@ -57,6 +57,9 @@ struct zt_reuse {
     zt_picture last;        /* the frame that was rendered last */
     const zt_picture *kept; /* may be like the next one as well; NULL: none */
     uint8_t *from;          /* a zt_tile_source for each tile */
+    uint64_t *stamps;       /* of the tiles of `last` (image/stamps.h): the frame each was new
+                               in, where frames are counted from 1 */
+    uint64_t serial;        /* of the frame */
     zt_arena spare;         /* the next outline's */
     int fruitless, rest;    /* how often too little came of it; how many frames it rests yet */
 };
@@ -68,9 +71,10 @@ zt_status zt_reuse_begin(zt_frame *frame);
 /* After them, `done` or stopped. */
 void zt_reuse_end(zt_frame *frame, bool done);
 
-/* Copies a tile into the image, from where it comes; or from there. */
+/* Copies a tile into the image, from where it comes, unless that has it already; or from there.
+ */
 void zt_reuse_copy(zt_frame *frame, int tile, int left, int top, int width, int height);
-void zt_reuse_keep(zt_frame *frame, int left, int top, int width, int height);
+void zt_reuse_keep(zt_frame *frame, int tile, int left, int top, int width, int height);
 
 static inline zt_footprint *zt_reuse_footprint(const zt_reuse *r, int tile, int first) {
     return &r->last.footprints[tile * ZT_REUSE_PARTS + first / (ZT_BATCH / ZT_REUSE_PARTS)];

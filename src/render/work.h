@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <stdatomic.h>
 
+#include "image/stamps.h"
 #include "render/canvas.h"
 #include "render/render.h"
 #include "render/samples.h"
@@ -12,6 +13,7 @@
 /* A tile is a batch. */
 enum { TILE_SIDE = 16 };
 static_assert(TILE_SIDE * TILE_SIDE == ZT_BATCH, "a tile is a batch");
+static_assert(TILE_SIDE == (int)ZT_STAMP_SIDE, "a tile has a stamp");
 
 /* What one thread works with; its contents mean nothing between calls, but for the count, which
  * is the frame's. */
@@ -41,7 +43,8 @@ typedef struct zt_frame {
     zt_render_work *work;
     zt_pool *pool;
     int tile_columns, tile_count;
-    int run;       /* tiles that a thread takes at a time */
+    uint64_t serial; /* its new tiles' stamp; 0: nothing is known of them */
+    int run;         /* tiles that a thread takes at a time */
     bool at_edges; /* first one sample in the middle of each pixel, then more at edges alone */
     /* Of the job's reuse: it takes down what is rendered; could copy; does so. */
     bool keeps, tries, copies;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/diag.h"
+#include "image/stamps.h"
 
 enum { IMAGES_MAX = 64 };
 static const size_t bytes_max = (size_t)1 << 30;
@@ -127,6 +128,7 @@ void zt_again_copy(zt_image *to, const zt_image *from) {
     memcpy(to->pixels, from->pixels, 4 * size);
     for (int i = 0; i < from->channel_count; i++)
         memcpy(to->channels[i].values, from->channels[i].values, size);
+    zt_image_forget_stamps(to);
     to->transparent = from->transparent;
     to->info = from->info;
 }

@@ -18,6 +18,7 @@
 #include "base/diag.h"
 #include "base/pool.h"
 #include "encode/output.h"
+#include "image/stamps.h"
 
 /* An image to lend; it is free where nobody holds it. */
 typedef struct slot {
@@ -203,6 +204,7 @@ static zt_status create_image(zt_image **out, const zt_outway *way) {
     zt_image *image;
     ZT_TRY(zt_image_create(&image, way->width, way->height));
     zt_status status = zt_image_add_aovs(image, way->aovs);
+    if (status == ZT_OK) status = zt_image_add_stamps(image);
     if (status == ZT_OK)
         *out = image;
     else

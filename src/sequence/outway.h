@@ -19,9 +19,9 @@ zt_status zt_outway_open(zt_outway **way, zt_output *output, int width, int heig
 void zt_outway_show(zt_outway *way, zt_status (*look)(void *user, const zt_image *image),
                     void *user);
 
-/* Lends an image to be filled, whose contents mean nothing; waits while too many are under way:
- * thread_count + 2, those that the caller keeps counted. Fails with what failed since. The
- * caller releases it, once, sent or not. */
+/* Lends an image to be filled, whose contents mean nothing but what its stamps say; waits while
+ * too many are under way: thread_count + 2, those that the caller keeps counted. Fails with
+ * what failed since. The caller releases it, once, sent or not. */
 zt_status zt_outway_lend(zt_image **image, zt_outway *way);
 void zt_outway_release(zt_outway *way, zt_image *image);
 
