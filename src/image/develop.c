@@ -1,6 +1,6 @@
-/* A curve by chords: in each of 512 pieces of an octave it is a straight line. The top bits of
- * a float (exponent and nine of the mantissa) are the piece, the others the place on it. The
- * idea is Fabian Giesen's ("float->sRGB8", 2012).
+/* A view's curve by chords: in each of 512 pieces of an octave it is a straight line. The top
+ * bits of a float (exponent and nine of the mantissa) are the piece, the others the place on
+ * it. The idea is Fabian Giesen's ("float->sRGB8", 2012).
  *
  * Owns the curves of the views, and the chords of each, 98 KB, made at the first use of the
  * view. */
@@ -110,7 +110,6 @@ static void make_table(zt_view view) {
     }
 }
 
-static void make_raw(void) { make_table(ZT_VIEW_RAW); }
 static void make_srgb(void) { make_table(ZT_VIEW_SRGB); }
 static void make_rec709(void) { make_table(ZT_VIEW_REC709); }
 static void make_filmic(void) { make_table(ZT_VIEW_FILMIC); }
@@ -118,8 +117,9 @@ static void make_filmic(void) { make_table(ZT_VIEW_FILMIC); }
 static const table *table_of(zt_view view) {
     static once_flag made[ZT_VIEW_COUNT] = {ONCE_FLAG_INIT, ONCE_FLAG_INIT, ONCE_FLAG_INIT,
                                             ONCE_FLAG_INIT};
-    static void (*const make[ZT_VIEW_COUNT])(void) = {make_raw, make_srgb, make_rec709,
-                                                      make_filmic};
+    static void (*const make[ZT_VIEW_COUNT])(void) = {[ZT_VIEW_SRGB] = make_srgb,
+                                                      [ZT_VIEW_REC709] = make_rec709,
+                                                      [ZT_VIEW_FILMIC] = make_filmic};
     call_once(&made[view], make[view]);
     return &tables[view];
 }
@@ -146,6 +146,20 @@ ZT_CLONES static void on_chords(float *restrict shown, const int32_t *restrict p
 }
 
 enum { PIECE = ZT_DITHER_SIDE }; /* of a row at a time */
+
+ZT_CLONES static void cut_all(float *restrict cut, const float *restrict numbers, int count) {
+    for (int i = 0; i < count; i++) {
+        float some = numbers[i] > FLOOR ? numbers[i] : 0; /* NaN is not */
+        cut[i] = some < 1 ? some : 1;
+    }
+}
+
+/* A piece of a row as it is. */
+static void keep_piece(float *shown, const float *pixels, int width) {
+    float cut[4 * PIECE];
+    cut_all(cut, pixels, 4 * width);
+    for (int x = 0; x < width; x++) memcpy(shown + 3 * x, cut + 4 * x, 3 * sizeof *shown);
+}
 
 /* A piece of a row through a view. */
 static void develop_piece(float *shown, const float *pixels, int width, const table *table) {
@@ -178,7 +192,8 @@ static void apply_color(float *shown, int width, const zt_color *color) {
 }
 
 void zt_develop_row(float *shown, const float *pixels, int width, const zt_developing *how) {
-    const table *table = how->color ? NULL : table_of(how->view);
+    bool raw = how->view == ZT_VIEW_RAW;
+    const table *table = how->color || raw ? NULL : table_of(how->view);
     float divided[4 * PIECE];
     for (int x = 0; x < width; x += PIECE) {
         int count = width - x < PIECE ? width - x : PIECE;
@@ -187,6 +202,8 @@ void zt_develop_row(float *shown, const float *pixels, int width, const zt_devel
         if (how->alpha == ZT_ALPHA_DIVIDED) from = divide(divided, from, count);
         if (table)
             develop_piece(to, from, count, table);
+        else if (!how->color)
+            keep_piece(to, from, count);
         else
             for (int i = 0; i < 3 * count; i++) to[i] = from[i / 3 * 4 + i % 3];
     }
