@@ -198,10 +198,10 @@ static void lines_of_codes(void **state) {
     for (int depth = 8; depth <= 16; depth += 2) {
         float most = (float)((1 << depth) - 1);
         for (int i = 0; i < COUNT; i++) numbers[i] = (float)i / (COUNT - 1);
-        zt_dither_line(codes, numbers, COUNT, most, NULL);
+        zt_dither_line(codes, numbers, 0, COUNT, most, NULL);
         for (int i = 0; i < COUNT; i++)
             assert_true(fabs((double)codes[i] - (double)numbers[i] * (double)most) <= 0.51);
-        zt_dither_line(codes, numbers, COUNT, most, zt_dither_row(5));
+        zt_dither_line(codes, numbers, 0, COUNT, most, zt_dither_row(5));
         int up = 0, down = 0;
         for (int i = 0; i < COUNT; i++) {
             double off = (double)codes[i] - (double)numbers[i] * (double)most;

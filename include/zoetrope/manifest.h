@@ -24,7 +24,7 @@ typedef struct zt_manifest zt_manifest;
  *
  * and then one for each thing that was completed, the later ones counting:
  *
- *   {"frame": 0, "samples": 48, "film_s": 1200, "key": "...", "pixels": "...", "time": 0.31,
+ *   {"frame": 0, "samples": 48, "film_s": 1200, "key": "...", "tiles": "...", "time": 0.31,
  *    "file": "film.0000.png", "bytes": 81234, "checksum": "...", "record": "..."}
  *   {"frame": 1, "min": 4, "max": 256, "error": 0.00213, "mean_max": 30, ...}
  *   {"piece": 0, "count": 48, "bytes": 1234567, "checksum": "...", "record": "...",
@@ -32,10 +32,10 @@ typedef struct zt_manifest zt_manifest;
  *
  * Samples, where a budget of time chose them, are those of each pixel; with `min`, `max` and
  * `error` they are taken as a description's are, and no more than `mean_max` on average. `key`
- * is the content key, `pixels` a checksum of all the numbers of the image, `checksum` that of
- * its file; `record` says what decided the bytes. A last line that was cut short says nothing.
- * ZT_EFILE, told at its place, for a file that cannot be read, is no such thing, or has no
- * frames. The caller frees the manifest. */
+ * is the content key, `tiles` a checksum of all the numbers of the image, tile by tile,
+ * `checksum` that of its file; `record` says what decided the bytes. A last line that was cut
+ * short says nothing. ZT_EFILE, told at its place, for a file that cannot be read, is no such
+ * thing, or has no frames. The caller frees the manifest. */
 zt_status zt_manifest_read(zt_manifest **manifest, const char *path, zt_listener listener);
 void zt_manifest_free(zt_manifest **manifest);
 

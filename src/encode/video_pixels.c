@@ -1,5 +1,6 @@
 /* Rows are developed to R'G'B' in floats (image/develop.h), become Y'CbCr where the format asks
- * for it, and are dithered once, to the codes of the format. */
+ * for it, and are dithered once, to the codes of the format. A code depends on its pixel, those
+ * beside it and its place, so that tiles which a slate shows already (image/stamps.h) stay. */
 #include "encode/video_pixels.h"
 
 #include <math.h>
@@ -12,9 +13,11 @@
 #include <libavutil/pixdesc.h>
 
 #include "base/text.h"
+#include "encode/video_slates.h"
 #include "encode/video_ycbcr.h"
 #include "image/develop.h"
 #include "image/dither.h"
+#include "image/stamps.h"
 
 struct zt_video_pixels {
     const AVPixFmtDescriptor *layout; /* of the frames */
@@ -23,30 +26,16 @@ struct zt_video_pixels {
     zt_color *color; /* NULL: the view */
     zt_developing how;
     char *manner;
+    zt_video_slates *slates;
 };
 
-/* What one conversion works with, in one piece of memory. */
+/* What one conversion works with, in one piece of memory: room for a row. */
 typedef struct lines {
-    float *shown;    /* a row of R'G'B' */
-    float *one;      /* a line of one component */
-    float *cb, *cr;  /* sums of chroma */
-    uint16_t *codes; /* of a line */
+    float *shown;    /* of R'G'B' */
+    float *one;      /* of one component */
+    float *cb, *cr;  /* sums of chroma, from before the first pixel on */
+    uint16_t *codes; /* likewise */
 } lines;
-
-static zt_status make_frame(AVFrame **frame, int width, int height, enum AVPixelFormat pixels,
-                            const zt_video_ear *ear) {
-    *frame = av_frame_alloc();
-    if (!*frame) return ZT_EMEMORY;
-    (*frame)->width = width;
-    (*frame)->height = height;
-    (*frame)->format = pixels;
-    AV_TRY(ear, av_frame_get_buffer(*frame, 0));
-    /* Readers may look past the ends of lines: what is there must not depend on what memory
-     * held. */
-    for (int i = 0; i < AV_NUM_DATA_POINTERS && (*frame)->buf[i]; i++)
-        memset((*frame)->buf[i]->data, 0, (*frame)->buf[i]->size);
-    return ZT_OK;
-}
 
 /* What the numbers mean, for decoders. Y'CbCr: BT.709 primaries and matrix in 16..235 (240),
  * chroma sited left. The transfer tag is BT.709's in all views, although only the view of
@@ -95,6 +84,7 @@ zt_status zt_video_pixels_open(zt_video_pixels **out, const zt_output_format *fo
     p->manner = zt_text_print("%s %s, dithered", av_get_pix_fmt_name(pixels),
                               p->color ? p->color->manner : zt_view_name(format->view));
     if (status == ZT_OK && !p->manner) status = ZT_EMEMORY;
+    if (status == ZT_OK) status = zt_video_slates_open(&p->slates);
     if (status == ZT_OK)
         *out = p;
     else
@@ -106,6 +96,7 @@ void zt_video_pixels_close(zt_video_pixels **converter) {
     zt_video_pixels *p = *converter;
     if (!p) return;
     zt_color_close(&p->color);
+    zt_video_slates_close(&p->slates);
     free(p->manner);
     free(p);
     *converter = NULL;
@@ -131,76 +122,119 @@ static void free_lines(lines *l) {
     free(l->codes);
 }
 
-/* A line of one component, from `count` numbers that are `scale` times less than codes; those
- * of more than 8 bits fill the low ones of 16. Colours are dithered, each component by rows of
- * its own but R'G'B', so that grey stays grey; 16 bits and alpha are not. */
+/* Pixels of a row: first .. last - 1. */
+typedef struct span {
+    int first, last;
+} span;
+
+/* Columns of one component in a line, from numbers that are `scale` times less than codes;
+ * those of more than 8 bits fill the low ones of 16. Colours are dithered, each component by
+ * rows of its own but R'G'B', so that grey stays grey; 16 bits and alpha are not. */
 static void put_line(AVFrame *frame, const zt_video_pixels *p, int y, int component,
-                     const float *numbers, int count, float scale, uint16_t *codes) {
+                     const float *numbers, span at, float scale, uint16_t *codes) {
     const AVComponentDescriptor *c = &p->layout->comp[component];
-    uint8_t *at = frame->data[c->plane] + (ptrdiff_t)y * frame->linesize[c->plane] + c->offset;
+    uint8_t *to = frame->data[c->plane] + (ptrdiff_t)y * frame->linesize[c->plane] + c->offset +
+                  (ptrdiff_t)at.first * c->step;
     bool dithered = component < 3 && c->depth < 16;
-    int apart = p->is_rgb ? 0 : component * (ZT_DITHER_SIDE / 3);
-    zt_dither_line(codes, numbers, count, scale, dithered ? zt_dither_row(y + apart) : NULL);
+    int apart = p->is_rgb ? 0 : component * (ZT_DITHER_SIDE / 3), count = at.last - at.first;
+    zt_dither_line(codes, numbers, at.first, count, scale,
+                   dithered ? zt_dither_row(y + apart) : NULL);
     if (c->depth <= 8 && c->step == 1)
-        for (int x = 0; x < count; x++) at[x] = (uint8_t)codes[x];
+        for (int x = 0; x < count; x++) to[x] = (uint8_t)codes[x];
     else if (c->depth <= 8)
-        for (int x = 0; x < count; x++, at += c->step) *at = (uint8_t)codes[x];
+        for (int x = 0; x < count; x++, to += c->step) *to = (uint8_t)codes[x];
     else if (p->layout->flags & AV_PIX_FMT_FLAG_BE)
-        for (int x = 0; x < count; x++, at += c->step) AV_WB16(at, codes[x]);
+        for (int x = 0; x < count; x++, to += c->step) AV_WB16(to, codes[x]);
     else
-        for (int x = 0; x < count; x++, at += c->step) AV_WL16(at, codes[x]);
+        for (int x = 0; x < count; x++, to += c->step) AV_WL16(to, codes[x]);
 }
 
 static void put_alpha(AVFrame *frame, const zt_video_pixels *p, int y, const float *pixels,
-                      lines *l) {
+                      span at, lines *l) {
     float most = (float)((1 << p->layout->comp[3].depth) - 1);
-    for (int x = 0; x < frame->width; x++) l->one[x] = zt_develop_cut(pixels[4 * x + 3]);
-    put_line(frame, p, y, 3, l->one, frame->width, most, l->codes);
+    for (int x = at.first; x < at.last; x++)
+        l->one[x - at.first] = zt_develop_cut(pixels[4 * x + 3]);
+    put_line(frame, p, y, 3, l->one, at, most, l->codes);
 }
 
-static void put_rgb(AVFrame *frame, const zt_video_pixels *p, int y, lines *l) {
+static void put_rgb(AVFrame *frame, const zt_video_pixels *p, int y, span at, lines *l) {
     float most = (float)((1 << p->layout->comp[0].depth) - 1);
     for (int c = 0; c < 3; c++) {
-        for (int x = 0; x < frame->width; x++) l->one[x] = l->shown[3 * x + c];
-        put_line(frame, p, y, c, l->one, frame->width, most, l->codes);
+        for (int x = 0; x < at.last - at.first; x++) l->one[x] = l->shown[3 * x + c];
+        put_line(frame, p, y, c, l->one, at, most, l->codes);
     }
 }
 
-static void put_ycbcr(AVFrame *frame, const zt_video_pixels *p, int y, lines *l) {
-    int width = frame->width, row_count = 1 << p->layout->log2_chroma_h;
+static void put_ycbcr(AVFrame *frame, const zt_video_pixels *p, int y, span at, lines *l) {
+    int row_count = 1 << p->layout->log2_chroma_h, count = at.last - at.first;
     bool halved = p->layout->log2_chroma_w > 0;
     float unit = (float)(1 << (p->layout->comp[0].depth - 8));
-    zt_video_luma(l->one, l->cb, l->cr, l->shown, width);
-    put_line(frame, p, y, 0, l->one, width, unit, l->codes);
+    zt_video_luma(l->one, l->cb, l->cr, l->shown, count);
+    put_line(frame, p, y, 0, l->one, at, unit, l->codes);
     for (int c = 1; (y + 1) % row_count == 0 && c < 3; c++) {
-        zt_video_chroma(l->one, c == 1 ? l->cb : l->cr, width, halved, row_count);
-        put_line(frame, p, y / row_count, c, l->one, halved ? width / 2 : width, unit,
-                 l->codes);
+        int before = halved && at.first > 0; /* of a pixel that only its neighbor asks for */
+        span some = {(at.first + before) / (halved + 1), at.last / (halved + 1)};
+        zt_video_chroma(l->one, c == 1 ? l->cb : l->cr, count, before, halved, row_count);
+        put_line(frame, p, y / row_count, c, l->one, some, unit, l->codes);
     }
 }
 
-static void convert(AVFrame *frame, const zt_video_pixels *p, const zt_image *image, lines *l) {
-    for (int y = 0; y < image->height; y++) {
-        const float *pixels = image->pixels + (size_t)y * (size_t)image->width * 4;
-        zt_develop_row(l->shown, pixels, image->width, &p->how);
-        if (p->is_rgb)
-            put_rgb(frame, p, y, l);
-        else
-            put_ycbcr(frame, p, y, l);
-        if (p->has_alpha) put_alpha(frame, p, y, pixels, l);
+/* Those pixels, and what besides them depends on their colours. */
+static void convert_span(AVFrame *frame, const zt_video_pixels *p, int y, span at,
+                         const zt_image *image, lines *l) {
+    const float *pixels = image->pixels + (size_t)y * (size_t)image->width * 4;
+    if (!p->is_rgb && p->layout->log2_chroma_w > 0) {
+        at.first -= at.first > 0;
+        at.last = at.last + 2 < image->width ? at.last + 2 : image->width;
     }
+    zt_develop_row(l->shown, pixels + 4 * (size_t)at.first, at.last - at.first, &p->how);
+    if (p->is_rgb)
+        put_rgb(frame, p, y, at, l);
+    else
+        put_ycbcr(frame, p, y, at, l);
+    if (p->has_alpha) put_alpha(frame, p, y, pixels, at, l);
+}
+
+static bool is_shown(const zt_image *image, const uint64_t *stamps, int tile) {
+    return image->stamps && image->stamps[tile] && image->stamps[tile] == stamps[tile];
+}
+
+/* Converts the tiles that the slate does not show, as many side by side as there are. */
+static void convert(zt_video_slate *slate, const zt_video_pixels *p, const zt_image *image,
+                    lines *l) {
+    int columns = zt_stamp_tiles(image->width), rows = zt_stamp_tiles(image->height);
+    for (int row = 0; row < rows; row++) {
+        int first = row * columns, begin = row * ZT_STAMP_SIDE, end = begin + ZT_STAMP_SIDE;
+        if (end > image->height) end = image->height;
+        for (int from = 0, to; from < columns; from = to + 1) {
+            for (to = from; to < columns && !is_shown(image, slate->stamps, first + to);) to++;
+            span at = {from * ZT_STAMP_SIDE, to * ZT_STAMP_SIDE};
+            if (at.last > image->width) at.last = image->width;
+            for (int y = begin; y < end && from < to; y++)
+                convert_span(slate->frame, p, y, at, image, l);
+        }
+    }
+    size_t size = (size_t)columns * (size_t)rows * sizeof *slate->stamps;
+    if (image->stamps)
+        memcpy(slate->stamps, image->stamps, size);
+    else
+        memset(slate->stamps, 0, size);
 }
 
 zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *p,
                                   const zt_image *image, const zt_video_ear *ear) {
     lines l = {0};
-    zt_status status = make_frame(frame, image->width, image->height, p->pixels, ear);
-    if (status == ZT_OK && !make_lines(&l, image->width)) status = ZT_EMEMORY;
+    zt_video_slate *slate = NULL;
+    zt_status status = make_lines(&l, image->width) ? ZT_OK : ZT_EMEMORY;
+    if (status == ZT_OK)
+        status = zt_video_slates_take(&slate, p->slates, image->width, image->height, p->pixels,
+                                      ear);
     if (status == ZT_OK) {
-        convert(*frame, p, image, &l);
-        tag_frame(p, *frame);
-    } else {
-        av_frame_free(frame);
+        convert(slate, p, image, &l);
+        tag_frame(p, slate->frame);
+        *frame = av_frame_clone(slate->frame);
+        if (!*frame) status = ZT_EMEMORY;
+        zt_video_slates_give(p->slates, slate);
     }
     free_lines(&l);
     return status;

@@ -29,12 +29,12 @@ ZT_CLONES static void halve(float *restrict line, const float *restrict sums, in
         line[x] = 128 + scale * (sums[2 * x] + 2 * sums[2 * x + 1] + sums[2 * x + 2]);
 }
 
-void zt_video_chroma(float *line, float *sums, int width, bool halved, int row_count) {
+void zt_video_chroma(float *line, float *sums, int width, int before, bool halved,
+                     int row_count) {
     float scale = 1 / (float)row_count;
-    sums[0] = sums[1]; /* beyond its edges the picture goes on as it ends */
-    sums[width + 1] = sums[width];
+    sums[0] = sums[1]; /* beyond its edge the picture goes on as it begins */
     if (halved)
-        halve(line, sums, width / 2, scale / 4);
+        halve(line, sums + before, (width - before) / 2, scale / 4);
     else
         for (int x = 0; x < width; x++) line[x] = 128 + scale * sums[x + 1];
     for (int x = 0; x < width + 2; x++) sums[x] = 0;

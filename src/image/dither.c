@@ -104,11 +104,13 @@ ZT_CLONES static void code_piece(uint16_t *restrict codes, const float *restrict
         codes[i] = (uint16_t)zt_dither_code(scale * numbers[i], row[i]);
 }
 
-void zt_dither_line(uint16_t *codes, const float *numbers, int count, float scale,
+void zt_dither_line(uint16_t *codes, const float *numbers, int first, int count, float scale,
                     const uint8_t *row) {
     uint8_t nearest[SIDE];
-    memset(nearest, 128, sizeof nearest);
-    for (int i = 0; i < count; i += SIDE)
-        code_piece(codes + i, numbers + i, count - i < SIDE ? count - i : SIDE, scale,
-                   row ? row : nearest);
+    if (!row) memset(nearest, 128, sizeof nearest);
+    for (int i = 0; i < count;) {
+        int at = (first + i) & (SIDE - 1), some = count - i < SIDE - at ? count - i : SIDE - at;
+        code_piece(codes + i, numbers + i, some, scale, (row ? row : nearest) + at);
+        i += some;
+    }
 }

@@ -18,9 +18,9 @@ static inline int32_t zt_dither_code(float steps, uint8_t threshold) {
     return ((int32_t)(steps * 256 + 0.5F) + threshold) >> 8;
 }
 
-/* Codes of a line: `scale` times each number, by a row of the mask; the nearest where that is
- * NULL. */
-void zt_dither_line(uint16_t *codes, const float *numbers, int count, float scale,
+/* Codes of a line, columns first .. first + count - 1: `scale` times each number, by a row of
+ * the mask; the nearest where that is NULL. */
+void zt_dither_line(uint16_t *codes, const float *numbers, int first, int count, float scale,
                     const uint8_t *row);
 
 #endif

@@ -19,6 +19,7 @@
 #include "sequence/renderer.h"
 #include "sequence/settings.h"
 #include "sequence/split.h"
+#include "sequence/sums.h"
 #include "sequence/verify.h"
 
 /* A film under way. */
@@ -41,6 +42,7 @@ typedef struct making {
     zt_notes notes;
     zt_output *output;
     zt_outway *way;
+    zt_sums *sums;
     zt_again *again; /* NULL: no two frames are known to be equal */
     zt_image *last;  /* that was lent and filled; NULL: none */
     zt_settings_texts settings;
@@ -87,7 +89,7 @@ static zt_status note_image(void *user, const zt_image *image) {
     making *m = user;
     if (!m->remembers && !m->timed) return ZT_OK;
     zt_manifest_frame *made = made_of(m, image->info.frame);
-    made->pixels = zt_verify_checksum(image);
+    ZT_TRY(zt_sums_of(&made->pixels, m->sums, image));
     if (m->still && m->remembers) return ZT_OK;
     return zt_notes_add(&m->notes, &(zt_manifest_line){.kind = ZT_LINE_FRAME, .frame = *made});
 }
@@ -317,7 +319,7 @@ static zt_status push_lists(making *m) {
     for (size_t i = 0; i < count; i++)
         m->made[i] = (zt_manifest_frame){.frame = m->frames.numbers[i], .render_s = -1};
     qsort(m->made, count, sizeof *m->made, by_frame);
-    return ZT_OK;
+    return zt_sums_open(&m->sums);
 }
 
 static zt_status open_notes(making *m) {
@@ -380,6 +382,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     if (status == ZT_OK) status = noted;
     zt_hold_close(&m.hold);
     zt_again_close(&m.again);
+    zt_sums_close(&m.sums);
     zt_frames_free(&m.frames);
     zt_frames_free(&m.rest);
     zt_arena_free(&m.settings.arena);

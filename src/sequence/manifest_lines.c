@@ -56,7 +56,7 @@ static void print_frame(FILE *file, const zt_manifest_frame *f, const zt_output_
     fprintf(file, "{\"frame\": %" PRId64, f->frame);
     if (f->max > 0) print_samples(file, f);
     if (zt_hash_is_known(f->key)) print_hash(file, "key", f->key);
-    if (zt_hash_is_known(f->pixels)) print_hash(file, "pixels", f->pixels);
+    if (zt_hash_is_known(f->pixels)) print_hash(file, "tiles", f->pixels);
     if (f->render_s >= 0) print_number(file, "time", f->render_s);
     if (r->count == 0) return;
     print_text(file, "file", r->file ? r->file : "");
@@ -117,7 +117,8 @@ enum {
     KEY_FILM_S,
     KEY_FRAME_S,
     KEY_KEY,
-    KEY_PIXELS,
+    KEY_TILES,
+    KEY_PIXELS, /* what they were before: not of tiles, and not asked for any more */
     KEY_TIME,
     KEY_FILE,
     KEY_BYTES,
@@ -132,19 +133,20 @@ enum {
 };
 
 static const char *const keys[KEYS + 1] = {
-    "zoetrope", "description", "size",  "precision", "written",  "frame",   "samples",
-    "min",      "max",         "error", "mean_max",  "film_s",   "frame_s", "key",
-    "pixels",   "time",        "file",  "bytes",     "checksum", "record",  "piece",
-    "film",     "count",       "split", "ends",      NULL};
+    "zoetrope", "description", "size",  "precision", "written", "frame",    "samples",
+    "min",      "max",         "error", "mean_max",  "film_s",  "frame_s",  "key",
+    "tiles",    "pixels",      "time",  "file",      "bytes",   "checksum", "record",
+    "piece",    "film",        "count", "split",     "ends",    NULL};
 
 #define BIT(key) (1u << KEY_##key)
 #define HEADER   (BIT(VERSION) | BIT(DESCRIPTION) | BIT(SIZE) | BIT(PRECISION) | BIT(WRITTEN))
 #define SAMPLES  (BIT(SAMPLES) | BIT(MIN) | BIT(MAX) | BIT(ERROR) | BIT(MEAN))
 #define BUDGET   (BIT(FILM_S) | BIT(FRAME_S))
 #define IMAGE    (BIT(FILE) | BIT(BYTES) | BIT(CHECKSUM) | BIT(RECORD))
-#define FRAME    (BIT(FRAME) | SAMPLES | BUDGET | BIT(KEY) | BIT(PIXELS) | BIT(TIME) | IMAGE)
-#define PIECE    (BIT(COUNT) | BIT(BYTES) | BIT(CHECKSUM) | BIT(RECORD) | BIT(TIME))
-#define SPLIT    (BIT(SPLIT) | BIT(ENDS))
+#define FRAME                                                                                  \
+    (BIT(FRAME) | SAMPLES | BUDGET | BIT(KEY) | BIT(TILES) | BIT(PIXELS) | BIT(TIME) | IMAGE)
+#define PIECE (BIT(COUNT) | BIT(BYTES) | BIT(CHECKSUM) | BIT(RECORD) | BIT(TIME))
+#define SPLIT (BIT(SPLIT) | BIT(ENDS))
 
 static zt_status read_hash(zt_hash *hash, zt_json *json) {
     char text[40];
@@ -229,8 +231,10 @@ static zt_status read_of_frame(zt_manifest_frame *f, int key, zt_json *json) {
         return zt_json_number(json, &f->budget.frame_s, 0, seconds_max);
     case KEY_KEY:
         return read_hash(&f->key, json);
-    case KEY_PIXELS:
+    case KEY_TILES:
         return read_hash(&f->pixels, json);
+    case KEY_PIXELS:
+        return read_hash(&(zt_hash){0}, json);
     default: /* KEY_TIME, of pieces, too */
         return zt_json_number(json, &f->render_s, 0, seconds_max);
     }

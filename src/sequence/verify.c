@@ -10,15 +10,7 @@
 #include "base/hash.h"
 #include "sequence/pacing.h"
 #include "sequence/renderer.h"
-
-zt_hash zt_verify_checksum(const zt_image *image) {
-    zt_hash parts[1 + ZT_IMAGE_CHANNELS_MAX];
-    size_t size = (size_t)image->width * (size_t)image->height * sizeof(float);
-    parts[0] = zt_hash_bytes(image->pixels, 4 * size);
-    for (int i = 0; i < image->channel_count; i++)
-        parts[i + 1] = zt_hash_bytes(image->channels[i].values, size);
-    return zt_hash_bytes(parts, (size_t)(1 + image->channel_count) * sizeof *parts);
-}
+#include "sequence/sums.h"
 
 /* Whether it is finished, and known what it was. */
 static const zt_manifest_frame *finished(const zt_verify_job *job, int64_t position) {
@@ -44,7 +36,9 @@ static zt_status verify(int64_t *verified, const zt_verify_job *job, const zt_ma
     zt_status status = zt_renderer_take(r, f->frame, image, watcher); /* all of it */
     r->sampling = own;
     ZT_TRY(status);
-    bool good = zt_hash_equal(zt_verify_checksum(image), f->pixels);
+    zt_hash checksum;
+    ZT_TRY(zt_sums_of(&checksum, NULL, image));
+    bool good = zt_hash_equal(checksum, f->pixels);
     *verified += good;
     if (good) return ZT_OK;
     zt_tell(r->listener, ZT_ERROR,

@@ -6,9 +6,6 @@
 
 #include "sequence/manifest.h"
 
-/* A checksum of all numbers of an image, further channels too. */
-zt_hash zt_verify_checksum(const zt_image *image);
-
 /* Finished frames, by position. */
 typedef struct zt_verify_job {
     const int64_t *frames;
