@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "measure.h"
+#include "sequence/keepsakes.h"
 #include "sequence/renderer.h"
 
 enum { ROUNDS = 7, FRAMES = 12, COMPARED = 16 };
@@ -30,9 +31,11 @@ static FILE *begin_film(const char *camera) {
     return file;
 }
 
-static zt_animation *end_film(FILE *file, const char *samples) {
+/* `radius` is that of the small thing, if there is one; NULL: as it is written. */
+static zt_animation *end_film(FILE *file, const char *samples, const char *radius) {
     must_be(fclose(file) == 0, "cannot write a film");
-    const zt_override overrides[] = {{"film.samples", samples}, {0}};
+    const zt_override overrides[] = {
+        {"film.samples", samples}, {radius ? "small.radius" : NULL, radius}, {0}};
     return film_open(scratch_path("film.yaml"), overrides);
 }
 
@@ -62,9 +65,11 @@ static void write_hall(FILE *file) {
                 "  - sphere: { center: [%.4f, %.4f, %.4f], radius: %.4f, material: matte }\n",
                 x, size, z, size);
     }
-    fprintf(file,
-            "  - sphere: { radius: 0.15, material: matte, center: { keys: { 0: [-6, 1.4, -4], "
-            "400: [6, 1.4, -4] } } }\n");
+    fprintf(
+        file,
+        "  - sphere: { name: small, radius: 0.15, material: matte, center: { keys: { 0: [-6, "
+        "1.4, -4], "
+        "400: [6, 1.4, -4] } } }\n");
 }
 
 /* The documents' room with its mirrors, and a sphere that moves. */
@@ -104,15 +109,19 @@ static frames open_frames(const zt_animation *animation, bool reuses) {
     return f;
 }
 
+static size_t image_size(const zt_image *image) {
+    return 4 * sizeof(float) * (size_t)image->width * (size_t)image->height;
+}
+
 /* Of the first frames; returns how many tiles of them are copied. */
 static double compare(frames *with, frames *without) {
-    size_t size = 4 * sizeof(float) * (size_t)with->image->width * (size_t)with->image->height;
     int64_t tiles = 0, copied = 0;
     for (int64_t i = 0; i < COMPARED; i++) {
         must_be(zt_renderer_frame(with->renderer, i, with->image, NULL) == ZT_OK &&
                     zt_renderer_frame(without->renderer, i, without->image, NULL) == ZT_OK,
                 "a frame");
-        must_be(memcmp(with->image->pixels, without->image->pixels, size) == 0,
+        must_be(memcmp(with->image->pixels, without->image->pixels, image_size(with->image)) ==
+                    0,
                 "the same bits with and without");
         tiles += i < 2 ? 0 : with->renderer->cost.tiles;
         copied += i < 2 ? 0 : with->renderer->cost.tiles_copied;
@@ -128,7 +137,7 @@ static void measure(const char *name, const char *camera, void (*write)(FILE *fi
     if (wanted && !strstr(name, wanted)) return;
     FILE *file = begin_film(camera);
     write(file);
-    zt_animation *animation = end_film(file, samples);
+    zt_animation *animation = end_film(file, samples, NULL);
     frames with = open_frames(animation, true), without = open_frames(animation, false);
     double copied = compare(&with, &without);
     runner runners[] = {{.name = "with", .run = frames_run, .user = &with},
@@ -142,6 +151,91 @@ static void measure(const char *name, const char *camera, void (*write)(FILE *fi
     frames_close(&with);
     frames_close(&without);
     zt_animation_free(&animation);
+}
+
+/* ---- after an edit --------------------------------------------------------------------------
+ */
+
+enum { EDIT_FRAMES = ROUNDS + 2 };
+
+/* The hall's next frames, by a run that keeps them, and copies from what was kept. */
+static frames open_kept(const zt_animation *animation, const char *target, bool anew) {
+    static int64_t numbers[EDIT_FRAMES];
+    static const zt_frames all = {numbers, EDIT_FRAMES};
+    for (int i = 0; i < EDIT_FRAMES; i++) numbers[i] = i;
+    frames f = open_frames(animation, true);
+    f.repeats = 1;
+    const zt_keepsakes_order order = {scratch_path(target), &all, 0, INT64_C(4) << 30, anew};
+    must(zt_keepsakes_open(&f.renderer->keepsakes, &order, f.renderer), "what was kept");
+    return f;
+}
+
+static spent kept_run(void *user) {
+    frames *f = user;
+    zt_renderer *r = f->renderer;
+    zt_hash key;
+    spent begun = spent_now();
+    must(zt_renderer_key(&key, r, f->next), "a key");
+    must(zt_renderer_frame(r, f->next, f->image, NULL), "a frame");
+    must(zt_keepsakes_take(r->keepsakes, f->next, key), "a frame that is kept");
+    f->next++;
+    return spent_since(begun);
+}
+
+static void close_kept(frames *f) {
+    zt_keepsakes_close(&f->renderer->keepsakes);
+    frames_close(f);
+}
+
+static zt_animation *open_hall(const char *camera, const char *samples, const char *radius) {
+    FILE *file = begin_film(camera);
+    write_hall(file);
+    return end_film(file, samples, radius);
+}
+
+static void measure_edit(const char *name, const char *camera, const char *samples) {
+    if (wanted && !strstr(name, wanted)) return;
+    zt_animation *before = open_hall(camera, samples, NULL),
+                 *edited = open_hall(camera, samples, "0.2");
+    frames first = open_kept(before, "first", true);
+    for (int i = 0; i < EDIT_FRAMES; i++) kept_run(&first);
+    close_kept(&first);
+    frames anew = open_frames(edited, false), making = open_kept(before, "other", true),
+           with = open_kept(edited, "first", false);
+    anew.repeats = 1;
+    kept_run(&with);
+    frames_run(&anew);
+    must_be(memcmp(with.image->pixels, anew.image->pixels, image_size(with.image)) == 0,
+            "the same bits after an edit");
+    runner runners[] = {{.name = "anew", .run = frames_run, .user = &anew},
+                        {.name = "making", .run = kept_run, .user = &making},
+                        {.name = "with", .run = kept_run, .user = &with}};
+    race(runners, 3, ROUNDS);
+    zt_stats stats = zt_renderer_stats(with.renderer);
+    double a = runners[0].median.wall_s, m = runners[1].median.wall_s,
+           w = runners[2].median.wall_s;
+    printf("%-32s %8.2f %8.2f %8.2f %8.2f x %5.1f %%  %d\n", name, 1e3 * a, 1e3 * m, 1e3 * w,
+           a / w, 100. * (double)stats.copied_tiles / (double)stats.tiles, (int)stats.found);
+    frames_close(&anew);
+    close_kept(&making);
+    close_kept(&with);
+    zt_animation_free(&before);
+    zt_animation_free(&edited);
+}
+
+static void measure_edits(const char *still) {
+    static const char moving[] = "position: { keys: { 0: [0, 4, 6], 400: [4, 4, 6] } }, "
+                                 "look_at: [0, 1, -6], fov: 50 deg";
+    printf("\nafter the small ball of the hall was made larger: rendered anew, of the film "
+           "before\n"
+           "and kept, and with tiles copied from what was kept; how many times quicker than "
+           "anew;\n"
+           "the tiles that are copied; of how many frames there was something.\n");
+    measure_edit("edit, camera moves, 1 sample", moving, "1");
+    measure_edit("edit, camera moves, 4 samples", moving, "4");
+    measure_edit("edit, camera moves, 16 samples", moving, "16");
+    measure_edit("edit, camera stands, 4 samples", still, "4");
+    measure_edit("edit, camera stands, 16 samples", still, "16");
 }
 
 int main(int argc, char **argv) {
@@ -160,5 +254,6 @@ int main(int argc, char **argv) {
     measure("documents' room, 16 samples", room, write_room, "16", "3 x");
     measure("everything moves, 1 sample", room, write_storm, "1", "0.98 x");
     measure("everything moves, 4 samples", room, write_storm, "4", "0.98 x");
+    measure_edits(hall);
     return 0;
 }
