@@ -43,6 +43,7 @@ static void take_out(zt_picture *picture, const keepsake *k) {
 static void begin_anew(reel *r) {
     zt_reuse_close(&r->reuse);
     assert_int_equal(zt_reuse_open(&r->reuse, true), ZT_OK);
+    for (int i = 0; i < REEL_IMAGES; i++) zt_image_forget_stamps(r->images[i]);
     r->reuse->keeps = true;
 }
 
