@@ -110,7 +110,7 @@ const zt_option_row zt_options_known[ZT_OPTION_COUNT] = {
                              "or single, of all rays, instead of what each frame asks for"},
     [ZT_OPTION_STATS] = {"stats", 0, NULL, "print in the end what was traced and what was not"},
     [ZT_OPTION_NO_REUSE] = {"no-reuse", 0, NULL,
-                            "copy nothing from the frame before, where it stays the same"},
+                            "copy nothing from the frame before, nor from before an edit"},
     [ZT_OPTION_CHECK_REUSE] = {"check-reuse", 0, NULL,
                                "render frames both ways, and fail where a bit differs"},
     [ZT_OPTION_KEEP] =

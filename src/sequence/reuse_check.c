@@ -17,8 +17,8 @@ static int64_t find_difference(const float *a, const float *b, int64_t count) {
 static zt_status tell(const zt_renderer *r, int64_t frame, const char *channel, int64_t pixel,
                       float copied, float rendered) {
     zt_tell(r->listener, ZT_ERROR,
-            "frame %" PRId64 ": with tiles copied from the frame before, %s of pixel (%" PRId64
-            ", %" PRId64 ") is %.9g; rendered it is %.9g",
+            "frame %" PRId64 ": with tiles copied, %s of pixel (%" PRId64 ", %" PRId64
+            ") is %.9g; rendered it is %.9g",
             frame, channel, pixel % r->format.width, pixel / r->format.width, (double)copied,
             (double)rendered);
     return ZT_EUNSUPPORTED;
