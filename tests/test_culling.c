@@ -249,6 +249,7 @@ static void set_stage(stage *st, test_scene *s, int moments) {
     st->pieces = *prepare(&st->exposure, st->piece_meshes, &st->arena);
     /* None is turned away by halves of its bounds. */
     for (int32_t i = 0; i < st->pieces.placed_count; i++) {
+        assert_true(zt_meshes_build(st->pieces.placed[i].built));
         zt_bvh_box *boxes = st->pieces.placed[i].built->hull->boxes;
         for (int k = 2; k < 1 << ZT_HULL_LEVELS; k++) boxes[k] = boxes[1];
     }

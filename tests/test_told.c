@@ -88,8 +88,43 @@ static void test_stats(void **state) {
     assert_contains(r->out, "libraries      OpenImageIO (image files)\n");
 }
 
+/* A mesh that is nowhere near a ray is not built; but one that a mirror shows is. */
+static void test_unmet(void **state) {
+    (void)state;
+    static const char model[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                                "property float y\nproperty float z\nelement face 4\n"
+                                "property list uchar int vertex_indices\nend_header\n"
+                                "0 0 0\n%d 0 0\n0 1 0\n0 0 1\n"
+                                "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    static const char scene[] =
+        "zoetrope: 1\nfilm: { size: [64, 48], rate: 10, duration: 1, reflections: 2 }\n"
+        "camera: { position: [0, 1, 6], look_at: [0, 1, 0] }\n"
+        "lights: [ { point: { position: [2, 4, 3] } } ]\n"
+        "objects:\n  - plane: { normal: [0, 1, 0] }\n"
+        "  - sphere: { name: ball, radius: 1, center: [-1, 1, 0], material: { reflectivity: %s "
+        "} }\n"
+        "  - mesh: { name: before, file: tetrahedron.ply }\n"
+        "  - mesh: { name: behind, file: other.ply, position: [-8, 1, 30], scale: 9 }\n";
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, model, 1 + i);
+        write_text(i ? "other.ply" : "tetrahedron.ply", text);
+    }
+    for (int mirrors = 0; mirrors < 2; mirrors++) {
+        char text[1024];
+        snprintf(text, sizeof text, scene, mirrors ? "0.5" : "0");
+        write_text("mesh.yaml", text);
+        const run *r = zoetrope("frame mesh.yaml 0 --stats --overwrite -o mesh.hash");
+        assert_int_equal(r->code, 0);
+        assert_null(strstr(r->out, "\"before\" is never met"));
+        bool told = strstr(r->out, "left out       mesh \"behind\" is never met: not built\n");
+        assert_int_equal(told, !mirrors);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_unmet),
         cmocka_unit_test(test_explain),
         cmocka_unit_test(test_stats),
     };

@@ -48,6 +48,11 @@ void zt_libraries(zt_library libraries[ZT_LIBRARY_COUNT]);
 zt_status zt_renderer_needs(zt_renderer *renderer, int64_t frame,
                             void (*say)(void *user, const char *sentence), void *user);
 
+/* How many meshes no ray came near in what was rendered so far, so that they were not built:
+ * said in a sentence for each, where there is someone to say it to. */
+int32_t zt_renderer_unmet(const zt_renderer *renderer,
+                          void (*say)(void *user, const char *sentence), void *user);
+
 #ifdef __cplusplus
 }
 #endif

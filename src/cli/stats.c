@@ -68,6 +68,11 @@ static void print_keepsakes(const zt_stats *s) {
            1e-9 * (double)s->keepsake_bytes);
 }
 
+static void print_unmet(void *user, const char *sentence) {
+    int *count = user;
+    printf("%-*s %s\n", LABEL_WIDTH, (*count)++ ? "" : "left out", sentence);
+}
+
 void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, double wall_s) {
     zt_stats s = zt_renderer_stats(renderer);
     print_frames(result);
@@ -81,6 +86,8 @@ void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, d
     print_share(s.copied_tiles, s.tiles);
     putchar('\n');
     print_keepsakes(&s);
+    int unmet = 0;
+    zt_renderer_unmet(renderer, print_unmet, &unmet);
     print_libraries();
     double stages_s = s.freeze_s + s.prepare_s + s.render_s;
     printf("%-*s freeze %.3g s, prepare %.3g s, render %.3g s, all else %.3g s\n", LABEL_WIDTH,

@@ -324,6 +324,8 @@ static zt_status climb_all(climb *c) {
         int count = neighbours(frames, c->settings->frames[i], film_frames);
         ZT_TRY(climb_frames(c, frames, count, i == 0));
     }
+    if (zt_renderer_unmet(c->renderer, NULL, NULL) > 0)
+        c->ladder->left_out[c->ladder->left_out_count++] = "meshes that no ray came near";
     average(c->ladder, film_frames > 1 ? c->settings->frame_count : 0);
     return ZT_OK;
 }

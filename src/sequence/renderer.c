@@ -211,6 +211,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     double begun_s = zt_clock_s();
     ZT_TRY(zt_render(image, &count, &t.job, r->work, r->pool));
     ZT_TRY(zt_guides_render(image, &t.job, &t.exposure, &t.passage, r->work, r->pool));
+    ZT_TRY(zt_meshes_status(r->meshes));
     r->cost.render_s = zt_clock_s() - begun_s;
     r->cost.left_out_count = count.left_out;
     r->cost.rays = count.rays;

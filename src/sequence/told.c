@@ -157,7 +157,22 @@ static void tell_rest(const teller *t) {
     if (n->mesh_count == 0)
         say(t, "no meshes: left out");
     else
-        say(t, "%" PRId32 " mesh%s", n->mesh_count, n->mesh_count == 1 ? "" : "es");
+        say(t, "%" PRId32 " mesh%s: built when a ray first comes near", n->mesh_count,
+            n->mesh_count == 1 ? "" : "es, each");
+}
+
+int32_t zt_renderer_unmet(const zt_renderer *r,
+                          void (*say_it)(void *user, const char *sentence), void *user) {
+    const teller t = {.say = say_it, .user = user, .animation = r->animation};
+    const zt_scene *rest = &r->animation->rest;
+    int32_t count = 0;
+    for (int32_t i = 0; i < rest->object_count; i++) {
+        const zt_object *o = &rest->objects[i];
+        if (o->shape != ZT_SHAPE_MESH || zt_meshes_met(r->meshes, o->mesh)) continue;
+        count++;
+        if (say_it) say(&t, "mesh \"%s\" is never met: not built", object_name(&t, i));
+    }
+    return count;
 }
 
 zt_status zt_renderer_needs(zt_renderer *r, int64_t frame,

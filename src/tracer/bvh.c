@@ -31,7 +31,7 @@ void zt_bvh_close(zt_bvh_builder **slot) {
 
 int zt_bvh_threads(const zt_bvh_builder *builder) { return builder->threads; }
 
-static zt_status start(zt_bvh_builder *builder) {
+zt_status zt_bvh_start(zt_bvh_builder *builder) {
     if (builder->embree) return ZT_OK;
     builder->door = zt_module_door("embree", "meshes and crowds of objects", builder->listener);
     if (!builder->door) return ZT_EUNSUPPORTED;
@@ -40,7 +40,7 @@ static zt_status start(zt_bvh_builder *builder) {
 
 zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_box *boxes,
                           int32_t box_count) {
-    ZT_TRY(start(builder));
+    ZT_TRY(zt_bvh_start(builder));
     return builder->door->of_boxes(bvh, builder->embree, boxes, box_count);
 }
 

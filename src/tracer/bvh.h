@@ -39,6 +39,10 @@ zt_status zt_bvh_open(zt_bvh_builder **builder, int threads, zt_listener listene
 void zt_bvh_close(zt_bvh_builder **builder);       /* after all of its hierarchies */
 int zt_bvh_threads(const zt_bvh_builder *builder); /* at least 1 */
 
+/* Loads Embree and has it start, so that no hierarchy fails but for lack of memory; told where
+ * that cannot be. */
+zt_status zt_bvh_start(zt_bvh_builder *builder);
+
 /* Over boxes, which need not outlive the call. *bvh is NULL or a hierarchy of the same builder,
  * which is then made over anew: what moves is built each frame and should allocate little.
  * Boxes with low > high, or with a number that is not finite, are left out. Where this fails,

@@ -6,10 +6,13 @@
 
 #include "base/bits.h"
 #include "base/diag.h"
+#include "base/pool.h"
 
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
+    zt_lock *building;    /* held while a mesh is built */
+    zt_status status;     /* of that */
     zt_built_mesh *built; /* one for each mesh */
     zt_bvh *crowds[2];    /* of what does not stay; of what does */
     zt_bvh_box *stayed;   /* over which boxes the latter is */
@@ -23,6 +26,7 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
     if (!m) return ZT_EMEMORY;
     m->built = calloc((size_t)mesh_count + 1, sizeof *m->built);
     zt_status status = m->built ? zt_bvh_open(&m->builder, threads, listener) : ZT_EMEMORY;
+    if (status == ZT_OK) status = zt_lock_open(&m->building);
     if (status != ZT_OK) {
         zt_meshes_close(&m);
         return status;
@@ -44,6 +48,7 @@ void zt_meshes_close(zt_meshes **slot) {
     for (int i = 0; i < 2; i++) zt_bvh_free(&m->crowds[i]);
     free(m->stayed);
     zt_bvh_close(&m->builder);
+    zt_lock_close(&m->building);
     free(m->built);
     free(m);
     *slot = NULL;
@@ -76,13 +81,47 @@ static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
     return zt_bvh_of_boxes(&b->bvh, builder, b->clusters.boxes, b->clusters.count);
 }
 
-zt_status zt_meshes_build(const zt_built_mesh **built, zt_meshes *m, int32_t index) {
-    zt_built_mesh *b = &m->built[index];
-    *built = b;
-    if (!zt_hash_is_known(b->content)) b->content = zt_mesh_content(b->mesh);
-    if (!b->hull) ZT_TRY(build_hull(b));
-    return b->bvh ? ZT_OK : build_bvh(b, m->builder);
+/* Without an origin, its bounds are the numbers of its positions. */
+static zt_bvh_box box_around(const zt_mesh *mesh) {
+    const double low[] = {mesh->low.x, mesh->low.y, mesh->low.z},
+                 high[] = {mesh->high.x, mesh->high.y, mesh->high.z},
+                 origin[] = {mesh->origin.x, mesh->origin.y, mesh->origin.z};
+    zt_bvh_box box;
+    for (int i = 0; i < 3; i++) {
+        double room = origin[i] == 0 ? 0 : 0x1p-50 * fmax(fabs(low[i]), fabs(high[i]));
+        box.low[i] = nextafterf((float)(low[i] - origin[i] - room), -INFINITY);
+        box.high[i] = nextafterf((float)(high[i] - origin[i] + room), INFINITY);
+    }
+    return box;
 }
+
+zt_status zt_meshes_begin(zt_built_mesh **built, zt_meshes *m, int32_t index) {
+    zt_built_mesh *b = *built = &m->built[index];
+    if (b->owner) return ZT_OK;
+    ZT_TRY(zt_bvh_start(m->builder));
+    b->content = zt_mesh_content(b->mesh);
+    b->around = box_around(b->mesh);
+    b->owner = m;
+    return ZT_OK;
+}
+
+bool zt_meshes_build(zt_built_mesh *b) {
+    zt_meshes *m = b->owner;
+    zt_lock_take(m->building);
+    if (m->status == ZT_OK && !zt_mesh_is_built(b)) {
+        m->status = build_hull(b);
+        if (m->status == ZT_OK) m->status = build_bvh(b, m->builder);
+        atomic_store_explicit(&b->built, m->status == ZT_OK, memory_order_release);
+    }
+    zt_lock_release(m->building);
+    return zt_mesh_is_built(b);
+}
+
+bool zt_meshes_met(const zt_meshes *m, int32_t mesh) {
+    return zt_mesh_is_built(&m->built[mesh]);
+}
+
+zt_status zt_meshes_status(const zt_meshes *m) { return m->status; }
 
 zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, bool stays,
                           const zt_bvh_box *boxes, int32_t count) {

@@ -148,7 +148,7 @@ static zt_status prepare_objects(made *all, zt_tracer *tracer, const zt_course *
         if (!there) continue;
         if (m.primitive->kind == ZT_PRIMITIVE_MESH) {
             m.primitive->placed = all->placed_count++;
-            ZT_TRY(zt_meshes_build(&placed->built, meshes, m.object->mesh));
+            ZT_TRY(zt_meshes_begin(&placed->built, meshes, m.object->mesh));
             tracer->moves |= placed->places != NULL;
         }
         ZT_TRY(prepare_looks(all, &m, c, i));

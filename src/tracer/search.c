@@ -202,11 +202,16 @@ static void meet_halves(lanes *restrict l, const zt_bvh_box *boxes, int index, i
 /* Adds a group of the batch's rays to those that the hierarchy is asked about, if any of the
  * lanes in `set` meets the hull. */
 static void pack(search *restrict s, int first, uint32_t set) {
-    const zt_bvh_box *boxes = s->placed->built->hull->boxes;
+    zt_built_mesh *built = s->placed->built;
     zt_bvh_rays *restrict packed = &s->packed;
     lanes l;
     real begin[ZT_BATCH_LANES];
     enter_mesh(&l, s, first);
+    if (!zt_mesh_is_built(built)) {
+        meet_halves(&l, &built->around, 0, 0);
+        if (!any_meets(&l) || !zt_meshes_build(built)) return;
+    }
+    const zt_bvh_box *boxes = built->hull->boxes;
     meet_halves(&l, boxes, 1, 0);
     if (!any_meets(&l)) return;
     memcpy(begin, l.enter, sizeof begin);

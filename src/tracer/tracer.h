@@ -62,7 +62,7 @@ typedef struct zt_lamp {
  * space, `origin` left out; give or take `room` (in that space), which grows by `reach` times
  * the largest coordinate of p. */
 typedef struct zt_placed_mesh {
-    const zt_built_mesh *built;
+    zt_built_mesh *built;
     vec3 rows[3], at;
     xform place; /* the way back */
     real reach, room;
