@@ -89,12 +89,9 @@ static zt_status choose_grown(movie *m) {
 }
 
 static zt_status make_like(movie *m) {
-    zt_image *image = NULL;
-    ZT_TRY(zt_video_pixels_open(&m->pixels, &m->format, m->grown.pixels, &m->ear));
-    ZT_TRY(zt_image_create(&image, m->format.width, m->format.height));
-    zt_status status = zt_video_pixels_convert(&m->like, m->pixels, image, &m->ear);
-    zt_image_free(&image);
-    return status;
+    const zt_output_format *f = &m->format;
+    ZT_TRY(zt_video_pixels_open(&m->pixels, f, m->grown.pixels, &m->ear));
+    return zt_video_pixels_like(&m->like, m->pixels, f->width, f->height, &m->ear);
 }
 
 /* What will hold all frames, at a guess: the file that grows, and the film made of it. */

@@ -221,20 +221,34 @@ static void convert(zt_video_slate *slate, const zt_video_pixels *p, const zt_im
         memset(slate->stamps, 0, size);
 }
 
+static zt_status take_slate(zt_video_slate **slate, const zt_video_pixels *p, int width,
+                            int height, const zt_video_ear *ear) {
+    return zt_video_slates_take(slate, p->slates, width, height, p->pixels, ear);
+}
+
+static zt_status show_slate(AVFrame **frame, const zt_video_pixels *p, zt_video_slate *slate) {
+    tag_frame(p, slate->frame);
+    *frame = av_frame_clone(slate->frame);
+    zt_video_slates_give(p->slates, slate);
+    return *frame ? ZT_OK : ZT_EMEMORY;
+}
+
+zt_status zt_video_pixels_like(AVFrame **frame, const zt_video_pixels *p, int width, int height,
+                               const zt_video_ear *ear) {
+    zt_video_slate *slate;
+    ZT_TRY(take_slate(&slate, p, width, height, ear));
+    return show_slate(frame, p, slate);
+}
+
 zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *p,
                                   const zt_image *image, const zt_video_ear *ear) {
     lines l = {0};
     zt_video_slate *slate = NULL;
     zt_status status = make_lines(&l, image->width) ? ZT_OK : ZT_EMEMORY;
-    if (status == ZT_OK)
-        status = zt_video_slates_take(&slate, p->slates, image->width, image->height, p->pixels,
-                                      ear);
+    if (status == ZT_OK) status = take_slate(&slate, p, image->width, image->height, ear);
     if (status == ZT_OK) {
         convert(slate, p, image, &l);
-        tag_frame(p, slate->frame);
-        *frame = av_frame_clone(slate->frame);
-        if (!*frame) status = ZT_EMEMORY;
-        zt_video_slates_give(p->slates, slate);
+        status = show_slate(frame, p, slate);
     }
     free_lines(&l);
     return status;

@@ -19,9 +19,13 @@ void zt_video_pixels_close(zt_video_pixels **converter);
 /* All that decides how an image's light becomes the numbers of a frame, as a text. */
 const char *zt_video_pixels_manner(const zt_video_pixels *converter);
 
-/* A new frame, of the caller to free: developed, converted, dithered, tagged. Formats with
- * alpha get the image's, and colours that are not multiplied by it; others are opaque. From any
- * thread, several at once. */
+/* A frame of this size that shows nothing in particular, tagged; of the caller to free. */
+zt_status zt_video_pixels_like(AVFrame **frame, const zt_video_pixels *converter, int width,
+                               int height, const zt_video_ear *ear);
+
+/* A new frame, of the caller to free, not to be written to: developed, converted, dithered,
+ * tagged. Formats with alpha get the image's, and colours that are not multiplied by it; others
+ * are opaque. From any thread, several at once. */
 zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *converter,
                                   const zt_image *image, const zt_video_ear *ear);
 

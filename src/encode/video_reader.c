@@ -41,6 +41,10 @@ int zt_video_reader_open(zt_video_reader *r, const char *path, const char *decod
     return open_decoder(r, decoder);
 }
 
+static bool is_wanted(const zt_video_reader *r) {
+    return !r->wants || r->packet->pts == AV_NOPTS_VALUE || r->wants(r->user, r->packet->pts);
+}
+
 int zt_video_reader_next(zt_video_reader *r) {
     for (;;) {
         int error = avcodec_receive_frame(r->decoder, r->frame);
@@ -48,15 +52,17 @@ int zt_video_reader_next(zt_video_reader *r) {
         error = av_read_frame(r->container, r->packet);
         if (error < 0 && error != AVERROR_EOF) return error;
         bool ours = error < 0 || r->packet->stream_index == r->stream->index;
+        r->decoder->skip_frame = is_wanted(r) ? AVDISCARD_DEFAULT : AVDISCARD_NONREF;
         if (ours) error = avcodec_send_packet(r->decoder, error < 0 ? NULL : r->packet);
         av_packet_unref(r->packet);
         if (ours && error < 0) return error;
     }
 }
 
-void zt_video_reader_seek(zt_video_reader *r, int64_t pts) {
-    if (av_seek_frame(r->container, r->stream->index, pts, AVSEEK_FLAG_BACKWARD) >= 0)
-        avcodec_flush_buffers(r->decoder);
+bool zt_video_reader_seek(zt_video_reader *r, int64_t pts) {
+    int error = av_seek_frame(r->container, r->stream->index, pts, AVSEEK_FLAG_BACKWARD);
+    if (error >= 0) avcodec_flush_buffers(r->decoder);
+    return error >= 0;
 }
 
 void zt_video_reader_close(zt_video_reader *r) {
