@@ -5,7 +5,6 @@
 #include <zoetrope/film.h>
 
 #include "bench.h"
-#include "image/develop.h"
 #include "measure.h"
 
 enum { ROUNDS = 3 };
@@ -24,44 +23,30 @@ static char *const encode_only[] = {
     "medium",      "-crf",        "18",         "-g",          "48",
     "-flags",      "+cgop",       "-threads",   "4",           "-x264-params",
     "force-cfr=1", "-movflags",   "+faststart", "encoded.mp4", NULL};
-static char *const convert[] = {"ffmpeg",
-                                "-y",
-                                "-f",
-                                "rawvideo",
-                                "-pixel_format",
-                                "rgb24",
-                                "-video_size",
-                                "1280x720",
-                                "-framerate",
-                                "24",
-                                "-i",
-                                "frames.rgb",
-                                "-vf",
-                                "scale=out_color_matrix=bt709",
-                                "-pix_fmt",
-                                "yuv420p",
-                                "-f",
-                                "rawvideo",
-                                "frames.yuv",
-                                NULL};
+static char *const decode[] = {"ffmpeg", "-y",       "-i",         "frames.mkv",
+                               "-f",     "rawvideo", "frames.yuv", NULL};
 
-static spent render_film(void *user) {
-    const zt_animation *animation = user;
-    const zt_output_option options[] = {{"preset", "medium"}, {NULL, NULL}};
-    const char *target = scratch_path("film.mp4");
-    int64_t count = zt_animation_film(animation)->frame_count;
+static void render_to(const char *name, const zt_output_option *options,
+                      const zt_animation *animation) {
+    const char *target = scratch_path(name);
     zt_renderer *renderer;
     zt_film_result result;
-    spent start = spent_now();
     must(zt_renderer_open(&renderer, animation, &(zt_render_settings){0}, to_stderr), target);
     zt_frames all;
-    must(zt_frames_read(&all, "0--1", count, to_stderr), target);
+    must(zt_frames_read(&all, "0--1", zt_animation_film(animation)->frame_count, to_stderr),
+         target);
     zt_film_order order = {
         .target = target, .options = options, .frames = &all, .overwrites = true};
     must(zt_film_render(&result, renderer, &order, NULL), target);
     zt_frames_free(&all);
     zt_renderer_close(&renderer);
-    return spent_per(spent_since(start), (double)count);
+}
+
+static spent render_film(void *user) {
+    const zt_output_option options[] = {{"preset", "medium"}, {NULL, NULL}};
+    spent start = spent_now();
+    render_to("film.mp4", options, user);
+    return spent_per(spent_since(start), (double)zt_animation_film(user)->frame_count);
 }
 
 static spent encode_film(void *user) {
@@ -76,24 +61,13 @@ static spent render_frames(void *user) {
     return each;
 }
 
-/* The film's frames as a raw file of the colors that x264 takes. */
+/* The film's own frames, as they are before x264. */
 static void write_frames(const zt_animation *animation) {
-    FILE *file = fopen(scratch_path("frames.rgb"), "wb");
-    frames f = frames_open(animation, (zt_render_settings){0}, 1);
-    size_t row = (size_t)3 * (size_t)f.image->width, size = row * (size_t)f.image->height;
-    uint8_t *bytes = malloc(size);
-    must_be(file && bytes, "no file for raw frames");
-    for (int64_t i = 0; i < zt_animation_film(animation)->frame_count; i++) {
-        frames_run(&f);
-        zt_develop_8(bytes, row, f.image, &(zt_developing){.view = ZT_VIEW_RAW}, 0,
-                     f.image->height);
-        must_be(fwrite(bytes, 1, size, file) == size, "cannot write raw frames");
-    }
-    must_be(fclose(file) == 0, "cannot write raw frames");
-    free(bytes);
-    frames_close(&f);
-    run_program(convert, 1);
-    remove(scratch_path("frames.rgb"));
+    const zt_output_option options[] = {
+        {"codec", "ffv1"}, {"pixel-format", "yuv420p"}, {NULL, NULL}};
+    render_to("frames.mkv", options, animation);
+    run_program(decode, 1);
+    remove(scratch_path("frames.mkv"));
 }
 
 void bench_movie(void) {
