@@ -127,7 +127,8 @@ static zt_status render_image(making *m, int64_t frame, zt_hash key) {
         made->budget = m->order->budget;
     }
     m->result->rendered++;
-    return zt_keepsakes_take(r->keepsakes, frame, key);
+    zt_keepsakes_take(r->keepsakes, frame, key);
+    return ZT_OK;
 }
 
 /* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */

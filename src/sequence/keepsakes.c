@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -49,9 +50,9 @@ struct zt_keepsakes {
     size_t found_room, made_room;
     zt_errand *errand;
     int64_t made_frame;
-    uint64_t made_size;
-    atomic_bool making; /* the errand is not done */
-    int failure;        /* why it could not be done: errno */
+    uint64_t made_size, made_total; /* bytes; and with all others */
+    atomic_bool making;             /* the errand is not done */
+    int failure;                    /* why it could not be done: errno */
     bool told;
 };
 
@@ -199,19 +200,32 @@ static zt_status look_around(zt_keepsakes *k, bool all_go) {
     return status;
 }
 
+/* Whether the disk has as much free as there is then. */
+static bool has_room(const zt_keepsakes *k) {
+    struct statvfs disk;
+    return statvfs(k->directory, &disk) == 0 &&
+           (double)disk.f_bavail * (double)disk.f_frsize > (double)k->made_total;
+}
+
+/* Returns errno where that fails. */
+static int write_file(const zt_keepsakes *k, const char *path, const char *aside) {
+    int failure = 0, file = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) return errno;
+    errno = ENOSPC; /* where nothing else is to blame */
+    if (!has_room(k) || !write_all(file, k->made, k->made_size)) failure = errno;
+    if (close(file) != 0 && !failure) failure = errno;
+    if (!failure && rename(aside, path) != 0) failure = errno;
+    if (failure) unlink(aside);
+    return failure;
+}
+
 /* Behind the rendering. Nobody sees half of it. */
 static void write_made(void *user) {
     zt_keepsakes *k = user;
     char *path = path_of(k, k->made_frame, ""), *aside = path_of(k, k->made_frame, ".part");
     zt_keepsake_seal(k->made);
-    int file = -1;
     mkdir(k->directory, 0777); /* if it is not there */
-    if (path && aside) file = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    bool good = file >= 0 && write_all(file, k->made, k->made_size);
-    if (!good) k->failure = path && aside ? errno : ENOMEM;
-    if (file >= 0) close(file);
-    if (good && rename(aside, path) != 0) k->failure = errno;
-    if (k->failure && file >= 0) unlink(aside);
+    k->failure = path && aside ? write_file(k, path, aside) : ENOMEM;
     free(path);
     free(aside);
     atomic_store(&k->making, false);
@@ -264,8 +278,8 @@ static zt_status make(zt_keepsakes *k, const zt_picture *picture, zt_keepsake_he
     ZT_TRY(
         remember(k, &(entry){head->frame, head->size, head->render_s, head->view, head->key}));
     if (!k->errand) ZT_TRY(zt_errand_open(&k->errand, write_made, k));
-    k->made_frame = head->frame;
     k->made_size = head->size;
+    k->made_total = k->size;
     atomic_store(&k->making, true);
     zt_errand_send(k->errand);
     return ZT_OK;
@@ -285,8 +299,8 @@ static void settle(zt_keepsakes *k) {
     k->told = true;
 }
 
-zt_status zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
-    if (!k) return ZT_OK;
+void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
+    if (!k) return;
     zt_renderer *r = k->renderer;
     const zt_frame_cost *cost = &r->cost;
     const zt_picture *last = &r->reuse->last;
@@ -302,11 +316,13 @@ zt_status zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     k->expected_s = render_s;
     k->rendered_s += cost->render_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
-    if (fresh || !last->whole || render_s < least_s(k)) return ZT_OK;
-    if (atomic_load(&k->making) && k->waited_s > patience * k->rendered_s) return ZT_OK;
+    if (fresh || !last->whole || render_s < least_s(k)) return;
+    if (atomic_load(&k->making) && k->waited_s > patience * k->rendered_s) return;
     settle(k);
-    if (k->failure) return ZT_OK;
-    return make(k, last, &(zt_keepsake_head){.frame = frame, .render_s = render_s, .key = key});
+    if (k->failure) return;
+    k->made_frame = frame;
+    zt_keepsake_head head = {.frame = frame, .render_s = render_s, .key = key};
+    if (make(k, last, &head) != ZT_OK) k->failure = ENOMEM;
 }
 
 /* ---- opening, closing -----------------------------------------------------------------------
@@ -323,7 +339,7 @@ static zt_status begin(zt_keepsakes *k, const zt_keepsakes_order *order) {
 zt_status zt_keepsakes_open(zt_keepsakes **out, const zt_keepsakes_order *order,
                             zt_renderer *r) {
     *out = NULL;
-    if (!r->reuse) return ZT_OK;
+    if (!r->reuse && order->bytes_max > 0) return ZT_OK;
     zt_keepsakes *k = calloc(1, sizeof *k);
     if (!k) return ZT_EMEMORY;
     int64_t shares = order->part_count > 0 ? order->part_count : 1;
@@ -345,8 +361,10 @@ void zt_keepsakes_close(zt_keepsakes **slot) {
     if (!k) return;
     settle(k);
     zt_errand_close(&k->errand);
-    k->renderer->reuse->kept = NULL;
-    k->renderer->reuse->keeps = false;
+    if (k->renderer->reuse) {
+        k->renderer->reuse->kept = NULL;
+        k->renderer->reuse->keeps = false;
+    }
     k->renderer->stats.keepsakes = (int64_t)k->count;
     k->renderer->stats.keepsake_bytes = (int64_t)k->size;
     if (k->directory) rmdir(k->directory); /* where it is empty */

@@ -2,9 +2,9 @@
  * of the description, tiles that it cannot affect are copied from them.
  *
  * TARGET.keepsakes/N is that of frame N, of whatever version of the description; it says by
- * itself what it is good for. One is made behind the rendering, where the frame took much
- * longer than making and finding it does, and as long as there is room; where there is none,
- * those of the frames that took longest stay. */
+ * itself what it is good for. All take no more than the disk has free. One is made behind the
+ * rendering, where the frame took much longer than making and finding it does, and as long as
+ * there is room; where there is none, those of the frames that took longest stay. */
 #ifndef ZT_SEQUENCE_KEEPSAKES_H
 #define ZT_SEQUENCE_KEEPSAKES_H
 
@@ -34,8 +34,9 @@ zt_status zt_keepsakes_open(zt_keepsakes **keepsakes, const zt_keepsakes_order *
  */
 void zt_keepsakes_offer(zt_keepsakes *keepsakes, const zt_render_job *job, int64_t frame);
 
-/* After it was: keeps it, where that is worth it. NULL does nothing. ZT_EMEMORY. */
-zt_status zt_keepsakes_take(zt_keepsakes *keepsakes, int64_t frame, zt_hash key);
+/* After it was: keeps it, where that is worth it. Where that fails, which is told once, no more
+ * are kept. NULL does nothing. */
+void zt_keepsakes_take(zt_keepsakes *keepsakes, int64_t frame, zt_hash key);
 
 /* Waits for the last one, and notes in the renderer's stats how many there are. */
 void zt_keepsakes_close(zt_keepsakes **keepsakes);
