@@ -159,6 +159,15 @@ static void room_is_bounded(void **state) {
     assert_refused(wrong, sizeof wrong / sizeof *wrong);
 }
 
+/* A frame whose random numbers change with whatever it holds is not worth keeping. */
+static void noise_is_not_kept(void **state) {
+    (void)state;
+    write_film("", "red", 6);
+#define FOCUS "--samples 96 --stats --set camera.aperture=0.1 --set camera.focus_distance=6"
+    render("render film.yaml -o " TARGET " " FOCUS, 0, 0, 0);
+    render("render film.yaml -o " TARGET " " FOCUS " --set film.seed=fixed", 0, 0, 6);
+}
+
 static void damage(const char *name, int64_t at, int64_t end) {
     struct stat there;
     int file = open(name, O_WRONLY);
@@ -231,6 +240,7 @@ int main(void) {
         IN_DIRECTORY(other_settings_replace_what_was_kept),
         IN_DIRECTORY(movies_and_previews),
         IN_DIRECTORY(room_is_bounded),
+        IN_DIRECTORY(noise_is_not_kept),
         IN_DIRECTORY(damage_costs_its_frame),
         IN_DIRECTORY(what_cannot_be_kept_is_told),
         IN_DIRECTORY(parts_keep_their_own),

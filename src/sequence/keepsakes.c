@@ -267,7 +267,8 @@ void zt_keepsakes_offer(zt_keepsakes *k, const zt_render_job *job, int64_t frame
     k->offered = e && zt_hash_equal(e->view, job->view) && read_keepsake(k, e);
     if (e && !k->offered) drop(k, e);
     reuse->kept = k->offered ? &k->picture : NULL;
-    reuse->keeps = !k->told && k->expected_s >= least_s(k);
+    reuse->keeps =
+        !k->told && k->expected_s >= least_s(k) && !zt_reuse_hindrance(job); /* of use */
 }
 
 /* Hands the picture over to the errand, if there is room for it. */
@@ -316,7 +317,7 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     k->expected_s = render_s;
     k->rendered_s += cost->render_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
-    if (fresh || !last->whole || render_s < least_s(k)) return;
+    if (fresh || !r->reuse->keeps || !last->whole || render_s < least_s(k)) return;
     if (atomic_load(&k->making) && k->waited_s > patience * k->rendered_s) return;
     settle(k);
     if (k->failure) return;

@@ -3,8 +3,9 @@
  *
  * TARGET.keepsakes/N is that of frame N, of whatever version of the description; it says by
  * itself what it is good for. All take no more than the disk has free. One is made behind the
- * rendering, where the frame took much longer than making and finding it does, and as long as
- * there is room; where there is none, those of the frames that took longest stay. */
+ * rendering, where tiles can be copied from such frames at all, the frame took much longer than
+ * making and finding it does, and as long as there is room; where there is none, those of the
+ * frames that took longest stay. */
 #ifndef ZT_SEQUENCE_KEEPSAKES_H
 #define ZT_SEQUENCE_KEEPSAKES_H
 
