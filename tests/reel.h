@@ -21,6 +21,7 @@ typedef struct reel {
     zt_image *image, *alone, *images[REEL_IMAGES]; /* of which frames fill the next one */
     zt_precision precision;
     zt_sampling sampling;
+    bool transparent;
     int64_t shown, copied; /* tiles; */
     int64_t kept;          /* among the copied, from what was kept */
     int64_t left_out;      /* samples of the last frame */
@@ -111,11 +112,15 @@ static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     zt_render_job job = {.scene = &ready,
                          .lens = lens,
                          .sampling = r->sampling,
+                         .transparent = r->transparent,
                          .reuse = r->reuse,
                          .view = reel_view(r, exposure),
                          .place_key = r->sampling.seed,
                          .frame_key = reel_key(r, exposure)};
     assert_int_equal(zt_warp_prepare(&job.warp, &r->sampling, &r->frame), ZT_OK);
+    if (r->sampling.edges)
+        assert_int_equal(
+            zt_thin_prepare(&job.thin, exposure, REEL_WIDTH, REEL_HEIGHT, &r->frame), ZT_OK);
     r->image = r->images[r->shown / REEL_TILES % REEL_IMAGES];
     assert_int_equal(zt_render(r->image, &count, &job, r->work, r->pool), ZT_OK);
     for (int i = 0; i < REEL_IMAGES; i++) reel_compare_stamps(r->image, r->images[i]);

@@ -15,16 +15,30 @@
 
 enum { SCENES = 300, FRAMES = 5, SHOWN = 9 };
 
+/* As many in each pixel, as they are asked for, or at edges; by any filter. */
+static zt_sampling draw_sampling(draw *d) {
+    static const int samples[] = {1, 1, 1, 4, 16}, least[] = {1, 2, 4, 7};
+    zt_sampling s = {.filter = draw_below(d, 3) ? ZT_FILTER_BOX
+                                                : (zt_filter)draw_below(d, ZT_FILTER_COUNT),
+                     .seed_fixed = draw_below(d, 4) == 0};
+    s.min = s.max = samples[draw_below(d, 5)];
+    if (draw_below(d, 2)) return s;
+    s.edges = draw_below(d, 2);
+    s.min = s.edges ? 1 : least[draw_below(d, 4)];
+    s.max = 8 << draw_below(d, 4);
+    s.error = draw_below(d, 2) ? 0.05 : 0.01;
+    if (draw_below(d, 8) == 0) s.mean_max = 3;
+    return s;
+}
+
 static void show_scene(reel *r, uint64_t key, const zt_mesh *meshes) {
     static test_scene base, moments[2];
     static const double times[] = {0, 1};
     static const bool steps[] = {false, false};
-    static const int samples[] = {1, 1, 1, 4, 16};
     draw d = {key, 0};
     draw_scene(&d, &base, meshes);
-    r->sampling = (zt_sampling){.filter = draw_below(&d, 3) ? ZT_FILTER_BOX : ZT_FILTER_TENT,
-                                .seed_fixed = draw_below(&d, 4) == 0};
-    r->sampling.min = r->sampling.max = samples[draw_below(&d, 5)];
+    r->sampling = draw_sampling(&d);
+    r->transparent = draw_below(&d, 8) == 0;
     r->precision = draw_below(&d, 3);
     bool blurred = draw_below(&d, 5) == 0, stays[SCENE_OBJECTS_MAX];
     /* Whether it is true decides what is kept, but not what is seen. */

@@ -62,7 +62,7 @@ void zt_canvas_close(zt_canvas *canvas) {
 void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row) {
     canvas->error[zt_canvas_pixel(canvas, column, row)] = NOT_YET;
     if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
-    canvas->slots[slot] = (zt_slot){.column = column, .row = row};
+    canvas->slots[slot] = (zt_slot){.column = (uint16_t)column, .row = (uint16_t)row};
     canvas->waiting[slot] = (zt_waiting){slot, 0};
 }
 
@@ -76,7 +76,7 @@ void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row) {
     *error = NOT_YET;
     int32_t slot = canvas->slot_count++;
     if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
-    canvas->slots[slot] = (zt_slot){.column = column, .row = row};
+    canvas->slots[slot] = (zt_slot){.column = (uint16_t)column, .row = (uint16_t)row};
     canvas->waiting[canvas->waiting_count++] = (zt_waiting){slot, 0};
 }
 

@@ -23,9 +23,11 @@ typedef struct zt_canvas_sum {
 /* A pixel that takes samples. */
 typedef struct zt_slot {
     zt_canvas_sum sum; /* of the samples that count positively */
-    int32_t column, row;
-    int32_t asked; /* how many samples were taken, those that are left out too */
-    bool strange;  /* a sample saw what none of the pixels around sees in its middle */
+    uint16_t column, row;
+    int32_t asked;  /* how many samples were taken, those that are left out too */
+    uint32_t known; /* the last of its rounds (render/rounds.h), 0: none */
+    bool strange;   /* a sample saw what none of the pixels around sees in its middle */
+    bool hidden;    /* there for its neighbours' sake: it does not become the image's */
 } zt_slot;
 
 /* A slot that takes further samples, and how many it has. */
@@ -79,6 +81,12 @@ void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row);
  * any thread. The canvas must be empty; its slots count once zt_canvas_added_all() says so. */
 void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row);
 void zt_canvas_added_all(zt_canvas *canvas);
+
+/* How many of the samples that a slot has taken were not finite. */
+static inline int32_t zt_slot_left_out(const zt_canvas *canvas, int32_t slot) {
+    const zt_slot *s = &canvas->slots[slot];
+    return s->asked - s->sum.taken - (canvas->negative ? canvas->negative[slot].taken : 0);
+}
 
 /* The mean of some samples, R G B A, of which those of `negative` (may be NULL) count
  * negatively; all 0 without any. Where what is left of the count is so little that noise would

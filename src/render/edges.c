@@ -66,6 +66,7 @@ static void mark_band(void *user, int task, int worker) {
     const edges *e = user;
     zt_canvas *canvas = &e->frame->work->canvas;
     const float *pixels = e->frame->image->pixels;
+    const uint32_t *paths = e->frame->paths;
     int last = canvas->height - 1;
     for (int y = task * BAND; y < min_int((task + 1) * BAND, canvas->height); y++) {
         size_t row = zt_canvas_pixel(canvas, 0, y);
@@ -73,8 +74,7 @@ static void mark_band(void *user, int task, int worker) {
         size_t below = zt_canvas_pixel(canvas, 0, min_int(y + 1, last));
         uint8_t *mark = canvas->edge + row;
         memset(mark, 0, (size_t)canvas->width);
-        mark_paths(mark, canvas->path + above, canvas->path + row, canvas->path + below,
-                   canvas->width);
+        mark_paths(mark, paths + above, paths + row, paths + below, canvas->width);
         if (y > 0 && y < last)
             mark_colors(mark, pixels + 4 * above, pixels + 4 * row, pixels + 4 * below,
                         canvas->width, e->allowed);

@@ -5,7 +5,8 @@
 
 #include "render/work.h"
 
-/* All pixels of the picture wait, those next to each other one after the other. */
+/* All pixels of the picture wait, those next to each other one after the other; where tiles are
+ * copied, only those to which something else may come than what was copied. */
 void zt_refine_begin(zt_frame *frame);
 
 /* Takes samples for the pixels that wait, and then writes them and all further channels to the

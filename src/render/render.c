@@ -191,8 +191,8 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
                 count == most && !f->keeps); /* what is kept is read again */
     if (f->at_edges)
-        fill_paths(f->work->canvas.path, f->image->width, own->light.path, own->column,
-                   own->row, count, count == most);
+        fill_paths(f->paths, f->image->width, own->light.path, own->column, own->row, count,
+                   count == most);
     return true;
 }
 
@@ -214,11 +214,12 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
                ZT_REUSE_PARTS * sizeof(zt_footprint));
     if (f->image->stamps) f->image->stamps[index] = f->serial;
+    if (!f->even && !f->at_edges) return true; /* its samples are taken later */
     bool done = true;
     for (int first = 0; first < ZT_BATCH && done; first += most) {
         int64_t left_out = own->count.left_out;
-        if (f->keeps) own->rays.footprint = zt_reuse_footprint(f->job->reuse, index, first);
-        if (f->keeps) own->rays.outline = &f->job->reuse->last.outline;
+        if (f->keeps)
+            zt_reuse_watch(&own->rays, zt_reuse_footprint(f->job->reuse, index, first), f);
         done = render_block(f, own, area, first, most);
         /* What is left out is told in each frame. */
         if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
@@ -270,28 +271,32 @@ static bool can_tell_edges(const zt_render_job *job) {
 }
 
 /* As many samples in each pixel, or wherever they are wanted. */
+static zt_status render_once(zt_frame *f) {
+    if (f->even) return render_tiles(f) ? ZT_OK : ZT_ESTOPPED;
+    ZT_TRY(zt_canvas_open(&f->work->canvas, f->image->width, f->image->height,
+                          zt_warp_is_signed(f->job->warp)));
+    if (!f->keeps) f->paths = f->work->canvas.path;
+    if ((f->at_edges || f->keeps) && !render_tiles(f)) return ZT_ESTOPPED;
+    if (f->at_edges)
+        zt_edges_find(f);
+    else
+        zt_refine_begin(f);
+    return zt_refine(f);
+}
+
 static zt_status render_all(zt_frame *f) {
     const zt_render_job *job = f->job;
-    const zt_sampling *s = &job->sampling;
-    if (zt_render_is_even(job)) {
-        fill_channels(f->image, s);
-        ZT_TRY(zt_reuse_begin(f));
-        bool done = render_tiles(f);
-        zt_reuse_end(f, done);
-        return done ? ZT_OK : ZT_ESTOPPED;
+    f->even = zt_render_is_even(job);
+    f->at_edges = !f->even && job->sampling.edges && can_tell_edges(job);
+    if (f->even) fill_channels(f->image, &job->sampling);
+    ZT_TRY(zt_reuse_begin(f));
+    zt_status status = render_once(f);
+    if (status == ZT_OK && f->copies && f->doubtful) {
+        zt_reuse_renounce(f);
+        status = render_once(f);
     }
-    zt_image_forget_stamps(f->image);
-    zt_canvas *canvas = &f->work->canvas;
-    ZT_TRY(zt_canvas_open(canvas, f->image->width, f->image->height,
-                          zt_warp_is_signed(job->warp)));
-    f->at_edges = s->edges && can_tell_edges(job);
-    if (f->at_edges) {
-        if (!render_tiles(f)) return ZT_ESTOPPED;
-        zt_edges_find(f);
-    } else {
-        zt_refine_begin(f);
-    }
-    return zt_refine(f);
+    zt_reuse_end(f, status == ZT_OK);
+    return status;
 }
 
 zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job *job,

@@ -16,12 +16,15 @@ zt_status zt_reuse_open(zt_reuse **out, bool tireless) {
     *out = calloc(1, sizeof **out);
     if (!*out) return ZT_EMEMORY;
     (*out)->tireless = tireless;
+    for (int i = 0; i < ZT_REUSE_LOCKS; i++) atomic_flag_clear(&(*out)->locks[i]);
     return ZT_OK;
 }
 
 void zt_picture_close(zt_picture *p) {
     free(p->pixels);
     free(p->footprints);
+    free(p->paths);
+    zt_rounds_close(&p->rounds);
     zt_arena_free(&p->arena);
     *p = (zt_picture){0};
 }
@@ -53,8 +56,8 @@ void zt_reuse_close(zt_reuse **slot) {
 }
 
 const char *zt_reuse_hindrance(const zt_render_job *job) {
-    if (!zt_render_is_even(job))
-        return "samples go where neighbors differ: no tiles are copied from the frame before";
+    if (!zt_render_is_even(job) && job->sampling.mean_max > 0)
+        return "all pixels share so many samples: no tiles are copied from the frame before";
     if (job->sampling.seed_fixed) return NULL;
     if (zt_lens_moves(job->lens))
         return "the camera moves while the shutter is open: no tiles are copied from the frame "
@@ -99,6 +102,14 @@ static bool other_rays(const zt_render_job *job, bool same_numbers) {
     return !same_numbers && (zt_lens_has_aperture(job->lens) || zt_lens_moves(job->lens));
 }
 
+/* What rays saw is told by the numbers of things and lamps. */
+static bool same_lamps(const zt_outline *before, const zt_outline *now) {
+    bool same = before->lamp_count == now->lamp_count;
+    for (int32_t i = 0; same && i < now->lamp_count; i++)
+        same = zt_hash_equal(before->lamps[i].place, now->lamps[i].place);
+    return same;
+}
+
 /* Has those tiles that come from nowhere else come from a picture, where they can. */
 static zt_status ask(zt_frame *f, const zt_picture *picture, zt_tile_source source,
                      const zt_outline *now, zt_arena *arena) {
@@ -106,6 +117,10 @@ static zt_status ask(zt_frame *f, const zt_picture *picture, zt_tile_source sour
     zt_differences differences;
     ZT_TRY(zt_differences_find(&differences, &picture->outline, now, same_numbers, arena));
     if (differences.all || other_rays(f->job, same_numbers)) return ZT_OK;
+    if (f->at_edges) {
+        if (differences.shifted || !same_lamps(&picture->outline, now)) return ZT_OK;
+        differences.drawn_lamps |= differences.dimmed_lamps;
+    }
     asking a = {f->job->reuse->from, picture, &differences, f->tile_count, source};
     zt_pool_run(f->pool, (f->tile_count + TILES - 1) / TILES, ask_task, &a);
     f->copies = true;
@@ -129,8 +144,9 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
 /* The picture that was kept, where it is of the same rays. */
 static const zt_picture *kept_of(const zt_reuse *r, const zt_frame *f) {
     const zt_picture *kept = r->kept;
-    bool fits = kept && kept->whole && zt_hash_equal(kept->view, f->job->view) &&
-                kept->width == f->image->width && kept->height == f->image->height;
+    bool fits = kept && kept->whole && !f->at_edges && !kept->at_edges &&
+                zt_hash_equal(kept->view, f->job->view) && kept->width == f->image->width &&
+                kept->height == f->image->height;
     return fits ? kept : NULL;
 }
 
@@ -147,14 +163,58 @@ static bool may_ask_last(zt_reuse *r, zt_hash view) {
     return still;
 }
 
+/* Whether what a picture's samples met is clear, whichever rays they shared a batch with: where
+ * pixels do not take as many, that is not the same in all frames. */
+static bool is_clear(const zt_frame *f, const zt_picture *picture) {
+    bool doubtful = false;
+    for (int i = 0; !f->even && i < f->tile_count * ZT_REUSE_PARTS; i++)
+        doubtful |= picture->footprints[i].doubtful;
+    return !doubtful;
+}
+
+/* Where samples are shared out over the picture, nothing is copied; nor where it is asked how
+ * many there were. */
+static bool may_keep(const zt_frame *f) {
+    return f->even || f->at_edges ||
+           (f->job->sampling.mean_max == 0 && !zt_image_channel(f->image, "samples") &&
+            !zt_image_channel(f->image, "error"));
+}
+
+/* The rounds of pixels in tiles that are rendered are forgotten; and beside them, where what is
+ * strange may be known there now. */
+static zt_status open_rounds(zt_frame *f, zt_picture *p) {
+    if (!p->paths) p->paths = calloc((size_t)p->width * (size_t)p->height, sizeof *p->paths);
+    if (!p->paths) return ZT_EMEMORY;
+    f->paths = p->paths;
+    f->rounds = &p->rounds;
+    bool is_signed = zt_warp_is_signed(f->job->warp);
+    if (!f->copies) return zt_rounds_open(&p->rounds, p->width, p->height, is_signed);
+    zt_rounds_reserve(&p->rounds, 0);
+    for (int tile = 0; tile < f->tile_count; tile++) {
+        if (f->job->reuse->from[tile] != ZT_TILE_RENDERED) continue;
+        int left = tile % f->tile_columns * TILE_SIDE, top = tile / f->tile_columns * TILE_SIDE;
+        for (int y = max_int(top - 1, 0); y <= min_int(top + TILE_SIDE, p->height - 1); y++)
+            for (int x = max_int(left - 1, 0); x <= min_int(left + TILE_SIDE, p->width - 1);
+                 x++)
+                zt_rounds_forget(&p->rounds, x, y);
+    }
+    return ZT_OK;
+}
+
 zt_status zt_reuse_begin(zt_frame *f) {
     zt_reuse *r = f->job->reuse;
+    f->rounds = NULL;
     f->keeps = f->copies = f->tries = false;
     if (!r) return ZT_OK;
     zt_outline now;
     zt_picture *last = &r->last;
     const zt_picture *kept = kept_of(r, f);
-    bool asks_last = may_ask_last(r, f->job->view), whole = last->whole;
+    if (!may_keep(f)) {
+        last->whole = false;
+        return ZT_OK;
+    }
+    bool asks_last = may_ask_last(r, f->job->view);
+    bool whole = last->whole && last->at_edges == f->at_edges && is_clear(f, last);
     bool takes = asks_last || kept || r->keeps;
     if (takes) ZT_TRY(make_room(r, f));
     last->view = f->job->view;
@@ -164,7 +224,11 @@ zt_status zt_reuse_begin(zt_frame *f) {
     ZT_TRY(zt_outline_make(&now, f->job->scene, &r->spare));
     f->tries = asks_last && whole;
     if (f->tries) ZT_TRY(ask(f, last, ZT_TILE_LAST, &now, &r->spare));
-    if (kept) ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
+    /* What goes from pixel to pixel must not do so from one picture to another. */
+    if (kept && (f->even || !f->copies) && is_clear(f, kept))
+        ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
+    last->at_edges = f->at_edges;
+    if (f->at_edges) ZT_TRY(open_rounds(f, last));
     zt_arena before = last->arena;
     last->arena = r->spare;
     r->spare = before;
@@ -172,6 +236,17 @@ zt_status zt_reuse_begin(zt_frame *f) {
     last->frame_key = f->job->frame_key;
     f->keeps = true;
     return ZT_OK;
+}
+
+void zt_reuse_renounce(zt_frame *f) {
+    zt_picture *last = &f->job->reuse->last;
+    memset(f->job->reuse->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
+    f->copies = f->doubtful = false;
+    if (f->rounds)
+        (void)zt_rounds_open(&last->rounds, last->width, last->height,
+                             last->rounds.negative != NULL);
+    for (int i = 0; i < zt_pool_thread_count(f->pool); i++)
+        f->work->threads[i].count.left_out = 0;
 }
 
 static int64_t count_from(const zt_frame *f, zt_tile_source source) {
@@ -194,6 +269,70 @@ void zt_reuse_end(zt_frame *f, bool done) {
     r->fruitless = worth ? 0 : r->fruitless + 1;
     if (r->tireless || r->fruitless < FRUITLESS_MAX) return;
     r->rest = 1 << min_int(r->fruitless, REST_MAX);
+}
+
+/* ---- where pixels take as many samples as they ask for --------------------------------------
+ */
+
+static int gap(int at, int first) {
+    return at < first ? first - at : max_int(at - (first + TILE_SIDE - 1), 0);
+}
+
+int zt_reuse_distance(const zt_frame *f, int x, int y, int most) {
+    const uint8_t *from = f->job->reuse->from;
+    int nearest = most + 1, rows = f->tile_count / f->tile_columns;
+    for (int row = max_int((y - most) / TILE_SIDE, 0);
+         row <= min_int((y + most) / TILE_SIDE, rows - 1); row++)
+        for (int column = max_int((x - most) / TILE_SIDE, 0);
+             column <= min_int((x + most) / TILE_SIDE, f->tile_columns - 1); column++)
+            if (from[row * f->tile_columns + column] == ZT_TILE_RENDERED)
+                nearest = min_int(nearest,
+                                  max_int(gap(x, column * TILE_SIDE), gap(y, row * TILE_SIDE)));
+    return nearest;
+}
+
+void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *f) {
+    rays->footprint = footprint;
+    rays->outline = &f->job->reuse->last.outline;
+}
+
+static void hold(zt_bvh_box *all, const zt_bvh_box *box, bool first) {
+    if (first) *all = *box;
+    for (int i = 0; i < 3; i++) {
+        all->low[i] = all->low[i] < box->low[i] ? all->low[i] : box->low[i];
+        all->high[i] = all->high[i] > box->high[i] ? all->high[i] : box->high[i];
+    }
+}
+
+static void join(zt_footprint *all, const zt_footprint *f) {
+    for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
+        zt_footstep *to = &all->steps[i];
+        const zt_footstep *from = &f->steps[i];
+        hold(&to->origins, &from->origins, !to->there);
+        hold(&to->directions, &from->directions, !to->there);
+        if (from->ends) hold(&to->points, &from->points, !to->ends);
+        to->there = true;
+        to->ends |= from->ends;
+        to->leaves |= from->leaves;
+    }
+    all->met |= f->met;
+    all->faced |= f->faced;
+    all->lit |= f->lit;
+    all->doubtful |= f->doubtful;
+    all->restless |= f->restless;
+}
+
+void zt_reuse_note(zt_frame *f, const zt_footprint *footprint, int column, int row) {
+    zt_reuse *r = f->job->reuse;
+    const int half = TILE_SIDE / 2, tile_columns = f->tile_columns;
+    int tile = row / TILE_SIDE * tile_columns + column / TILE_SIDE;
+    int part = row / half % 2 * 2 + column / half % 2;
+    atomic_flag *lock = &r->locks[tile % ZT_REUSE_LOCKS];
+    if (footprint->doubtful) atomic_store_explicit(&f->doubtful, true, memory_order_relaxed);
+    while (atomic_flag_test_and_set_explicit(lock, memory_order_acquire)) {
+    }
+    join(&r->last.footprints[tile * ZT_REUSE_PARTS + part], footprint);
+    atomic_flag_clear_explicit(lock, memory_order_release);
 }
 
 /* ---- pixels ---------------------------------------------------------------------------------

@@ -22,11 +22,14 @@
 #ifndef ZT_RENDER_REUSE_H
 #define ZT_RENDER_REUSE_H
 
+#include <stdatomic.h>
+
+#include "render/rounds.h"
 #include "render/work.h"
 #include "tracer/footprint.h"
 
 /* What of a tile has a footprint of its own: a quarter, or all of it. */
-enum { ZT_REUSE_PARTS = 4 };
+enum { ZT_REUSE_PARTS = 4, ZT_REUSE_LOCKS = 64 };
 
 /* A frame as it was rendered, with what its rays touched: all that tiles are copied from. */
 typedef struct zt_picture {
@@ -34,7 +37,10 @@ typedef struct zt_picture {
     uint64_t frame_key; /* and its random numbers */
     bool whole;         /* the pixels and footprints of all tiles are there, and belong to it */
     int width, height;
+    bool at_edges;            /* pixels are those of the first samples, in the middles; */
     float *pixels;            /* R G B A */
+    uint32_t *paths;          /* and there are what these saw, */
+    zt_rounds rounds;         /* and what the further ones came to; else NULL and zeros */
     zt_footprint *footprints; /* ZT_REUSE_PARTS for each tile */
     zt_outline outline;
     zt_arena arena; /* the outline's */
@@ -62,11 +68,15 @@ struct zt_reuse {
     uint64_t serial;        /* of the frame */
     zt_arena spare;         /* the next outline's */
     int fruitless, rest;    /* how often too little came of it; how many frames it rests yet */
+    atomic_flag locks[ZT_REUSE_LOCKS]; /* of the footprints of each so manieth tile */
 };
 
-/* Before an even picture's tiles: says for each of them whether it is copied, and whether what
- * is rendered is kept. ZT_EMEMORY. */
+/* Before a picture's tiles: says for each of them whether it is copied, and whether what is
+ * rendered is kept. ZT_EMEMORY. */
 zt_status zt_reuse_begin(zt_frame *frame);
+
+/* All is rendered, once more. */
+void zt_reuse_renounce(zt_frame *frame);
 
 /* After them, `done` or stopped. */
 void zt_reuse_end(zt_frame *frame, bool done);
@@ -75,6 +85,16 @@ void zt_reuse_end(zt_frame *frame, bool done);
  */
 void zt_reuse_copy(zt_frame *frame, int tile, int left, int top, int width, int height);
 void zt_reuse_keep(zt_frame *frame, int tile, int left, int top, int width, int height);
+
+/* How far a pixel is from the nearest one that is rendered, along the longer axis; where that
+ * is more than `most`, something more. */
+int zt_reuse_distance(const zt_frame *frame, int x, int y, int most);
+
+/* Has rays leave a footprint. */
+void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *frame);
+
+/* Adds the footprint of samples of pixels of a tile, that of such a pixel, from any thread. */
+void zt_reuse_note(zt_frame *frame, const zt_footprint *footprint, int column, int row);
 
 static inline zt_footprint *zt_reuse_footprint(const zt_reuse *r, int tile, int first) {
     return &r->last.footprints[tile * ZT_REUSE_PARTS + first / (ZT_BATCH / ZT_REUSE_PARTS)];

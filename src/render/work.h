@@ -45,9 +45,14 @@ typedef struct zt_frame {
     int tile_columns, tile_count;
     uint64_t serial; /* its new tiles' stamp; 0: nothing is known of them */
     int run;         /* tiles that a thread takes at a time */
-    bool at_edges; /* first one sample in the middle of each pixel, then more at edges alone */
+    bool even;       /* as many samples in each pixel, which follow from nothing else; */
+    uint32_t *paths; /* plane of what the middles of pixels saw; of at_edges */
+    bool at_edges; /* or first one sample in the middle of each pixel, then more at edges alone
+                    */
     /* Of the job's reuse: it takes down what is rendered; could copy; does so. */
     bool keeps, tries, copies;
+    struct zt_rounds *rounds; /* where they are kept, else NULL */
+    atomic_bool doubtful;     /* samples of pixels may depend on which share their batch */
     int64_t tiles_copied, tiles_kept; /* the latter are among the former */
     atomic_bool stopped;
 } zt_frame;

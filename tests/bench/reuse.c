@@ -31,11 +31,14 @@ static FILE *begin_film(const char *camera) {
     return file;
 }
 
-/* `radius` is that of the small thing, if there is one; NULL: as it is written. */
+/* `samples`: how many, what is said of them, or "edges"; `radius` is that of the small thing, if
+ * there is one; NULL: as it is written. */
 static zt_animation *end_film(FILE *file, const char *samples, const char *radius) {
     must_be(fclose(file) == 0, "cannot write a film");
-    const zt_override overrides[] = {
-        {"film.samples", samples}, {radius ? "small.radius" : NULL, radius}, {0}};
+    bool edges = strcmp(samples, "edges") == 0;
+    const zt_override overrides[] = {{edges ? "film.quality" : "film.samples", samples},
+                                     {radius ? "small.radius" : NULL, radius},
+                                     {0}};
     return film_open(scratch_path("film.yaml"), overrides);
 }
 
@@ -241,7 +244,8 @@ static void measure_edits(const char *still) {
 int main(int argc, char **argv) {
     static const char hall[] = "position: [0, 4, 6], look_at: [0, 1, -6], fov: 50 deg",
                       room[] =
-                          "position: [1.2, 2.4, 7.5], look_at: [-0.2, 1.3, 0], fov: 40 deg";
+                          "position: [1.2, 2.4, 7.5], look_at: [-0.2, 1.3, 0], fov: 40 deg",
+                      adaptive[] = "{ min: 4, max: 64, error: 0.01 }";
     wanted = argc > 1 ? argv[1] : NULL;
     printf(
         "1280 x 720, milliseconds of wall time a frame, all rendered and with tiles copied;\n"
@@ -249,11 +253,17 @@ int main(int argc, char **argv) {
         "the tiles that are copied; what freezing and preparing take of it.\n");
     measure("hall of 1,000 things, 1 sample", hall, write_hall, "1", "8 x");
     measure("hall of 1,000 things, 4 samples", hall, write_hall, "4", "8 x");
+    measure("hall of 1,000 things, adaptive", hall, write_hall, adaptive, "");
+    measure("hall of 1,000 things, edges", hall, write_hall, "edges", "");
     measure("documents' room, 1 sample", room, write_room, "1", "");
     measure("documents' room, 4 samples", room, write_room, "4", "3 x");
     measure("documents' room, 16 samples", room, write_room, "16", "3 x");
+    measure("documents' room, adaptive", room, write_room, adaptive, "");
+    measure("documents' room, edges", room, write_room, "edges", "");
     measure("everything moves, 1 sample", room, write_storm, "1", "0.98 x");
     measure("everything moves, 4 samples", room, write_storm, "4", "0.98 x");
+    measure("everything moves, adaptive", room, write_storm, adaptive, "0.98 x");
+    measure("everything moves, edges", room, write_storm, "edges", "0.98 x");
     measure_edits(hall);
     return 0;
 }
