@@ -167,6 +167,7 @@ static void add_near(zt_frame *f, int tile, int reach) {
     zt_canvas *canvas = &f->work->canvas;
     int left = tile % f->tile_columns * TILE_SIDE, top = tile / f->tile_columns * TILE_SIDE;
     if (zt_reuse_distance(f, left, top, 2 * reach + TILE_SIDE) > 2 * reach + TILE_SIDE) return;
+    bool changes = false;
     for (int i = 0; i < ZT_BATCH; i++) {
         int x = left + f->work->column[i], y = top + f->work->row[i];
         if (x >= canvas->width || y >= canvas->height) continue;
@@ -174,7 +175,9 @@ static void add_near(zt_frame *f, int tile, int reach) {
         if (distance > 2 * reach) continue;
         zt_canvas_add(canvas, x, y);
         canvas->slots[canvas->slot_count - 1].hidden = distance > reach;
+        changes |= distance <= reach;
     }
+    if (changes) zt_reuse_stamp(f, tile);
 }
 
 void zt_refine_begin(zt_frame *f) {

@@ -214,7 +214,10 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
                ZT_REUSE_PARTS * sizeof(zt_footprint));
     if (f->image->stamps) f->image->stamps[index] = f->serial;
-    if (!f->even && !f->at_edges) return true; /* its samples are taken later */
+    if (!f->even && !f->at_edges) { /* its samples are taken later */
+        zt_reuse_stamp(f, index);
+        return true;
+    }
     bool done = true;
     for (int first = 0; first < ZT_BATCH && done; first += most) {
         int64_t left_out = own->count.left_out;
@@ -276,12 +279,15 @@ static zt_status render_once(zt_frame *f) {
     ZT_TRY(zt_canvas_open(&f->work->canvas, f->image->width, f->image->height,
                           zt_warp_is_signed(f->job->warp)));
     if (!f->keeps) f->paths = f->work->canvas.path;
+    if (!f->keeps || f->at_edges) zt_image_forget_stamps(f->image);
     if ((f->at_edges || f->keeps) && !render_tiles(f)) return ZT_ESTOPPED;
     if (f->at_edges)
         zt_edges_find(f);
     else
         zt_refine_begin(f);
-    return zt_refine(f);
+    ZT_TRY(zt_refine(f));
+    if (f->at_edges) zt_image_forget_stamps(f->image); /* those were of the first samples */
+    return ZT_OK;
 }
 
 static zt_status render_all(zt_frame *f) {

@@ -7,7 +7,6 @@
 #endif
 
 #include "base/diag.h"
-#include "base/pages.h"
 
 /* One tile in so many must be copied for it to be worth it; twice in a row it may not be. Then
  * it rests, each time twice as long. */
@@ -33,7 +32,7 @@ void zt_picture_close(zt_picture *p) {
 zt_status zt_picture_open(zt_picture *p, int width, int height) {
     if (p->width == width && p->height == height) return ZT_OK;
     zt_picture_close(p);
-    p->pixels = zt_pages_alloc(4 * (size_t)width * (size_t)height * sizeof *p->pixels);
+    p->pixels = calloc(4 * (size_t)width * (size_t)height, sizeof *p->pixels);
     p->footprints =
         calloc((size_t)zt_tile_count(width, height) * ZT_REUSE_PARTS, sizeof *p->footprints);
     if (!p->pixels || !p->footprints) {
@@ -373,8 +372,13 @@ void zt_reuse_copy(zt_frame *f, int tile, int left, int top, int width, int heig
     }
 }
 
-void zt_reuse_keep(zt_frame *f, int tile, int left, int top, int width, int height) {
+void zt_reuse_stamp(zt_frame *f, int tile) {
     f->job->reuse->stamps[tile] = f->serial;
+    if (f->image->stamps) f->image->stamps[tile] = f->serial;
+}
+
+void zt_reuse_keep(zt_frame *f, int tile, int left, int top, int width, int height) {
+    zt_reuse_stamp(f, tile);
     for (int y = top; y < top + height; y++) {
         size_t at = place_of(f, left, y);
         memcpy(f->job->reuse->last.pixels + at, f->image->pixels + at,

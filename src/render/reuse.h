@@ -1,20 +1,37 @@
 /* From frame to frame: tiles of which nothing that their rays touched has changed are copied.
  * The same bits as if they were rendered, whatever was rendered before.
  *
- * How it is exact. In a picture of which each pixel takes as many samples, a tile is a function
- * of the camera, of where in pixels the samples are (which is keyed by seed and camera), and of
- * what its rays meet. While the camera stands still all numbers are relative to the same place,
- * so that what did not change is the same numbers. What each block of a tile's rays touched is
- * kept as a footprint (tracer/footprint.h), from the frame that was rendered last, and asked
- * about all that differs in the next one; likewise from one of an earlier run, where the caller
- * has it; what concerns all rays at once (the precision, the
- * depth of mirrors, whether things lie on each other) is compared as a whole. Random numbers
- * other than places are keyed by all that the frame holds, so that they change with it: tiles
- * that see lamps with a size, and what moves while the shutter is open, are not copied then,
- * and none are where there is an opening of the lens.
+ * How it is exact. What the samples of a tile come to is a function of the camera, of where in
+ * pixels the samples are (which is keyed by seed and camera), and of what its rays meet. While
+ * the camera stands still all numbers are relative to the same place, so that what did not
+ * change is the same numbers. What each block of a tile's rays touched is kept as a footprint
+ * (tracer/footprint.h), from the frame that was rendered last, and asked about all that differs
+ * in the next one; likewise from one of an earlier run, where the caller has it; what concerns
+ * all rays at once (the precision, the depth of mirrors, whether things lie on each other) is
+ * compared as a whole. Random numbers other than places are keyed by all that the frame holds,
+ * so that they change with it: tiles that see lamps with a size, and what moves while the
+ * shutter is open, are not copied then, and none are where there is an opening of the lens.
  *
- * Adaptive samplings go from pixel to pixel as far as what they find leads; their pictures are
- * not copied from.
+ * Where each pixel takes as many samples, that is all, and a tile that is not touched is
+ * copied. Where they are taken in rounds, whether a pixel goes on depends on the ones around as
+ * well.
+ *
+ * - Without edges all pixels take a round at the same time, and what one pixel came to is felt
+ * a pixel further on with each round but the first. So from tiles that are touched pixels are
+ *   decided about anew as far as there are such rounds, and to decide about these, as far
+ *   again; the others' means are copied (render/refine.c). Where a budget bounds the samples of
+ *   the picture, all depends on all, and nothing is copied.
+ * - At edges, pixels may join late, and nobody knows how far that goes. All decisions are made
+ *   again, in the whole picture; but what a pixel's first round came to, its second and so on,
+ *   follows from its tile's rays, and from what the middles of the pixels around saw: it is
+ * kept (render/rounds.h), and looked up where neither is touched. What was seen is told by
+ * things' and lamps' numbers, and of a lamp that is hidden only where it shines: so where
+ * numbers change nothing is looked up, and a lamp that is dimmed touches all that faces it.
+ *
+ * In both cases footprints grow by all samples that a tile's pixels take, frame by frame, until
+ * it is touched. Which samples share a batch is then not the same as in a picture rendered by
+ * itself. That makes no difference but where what is met may depend on the order in which
+ * things are asked: where that occurs (a footprint is doubtful), the whole frame is rendered.
  *
  * What it costs. Taking footprints down takes a hundredth of a frame or two, asking them less;
  * a first frame, and one after the camera moved, take down nothing. Where hardly a tile is
@@ -85,6 +102,9 @@ void zt_reuse_end(zt_frame *frame, bool done);
  */
 void zt_reuse_copy(zt_frame *frame, int tile, int left, int top, int width, int height);
 void zt_reuse_keep(zt_frame *frame, int tile, int left, int top, int width, int height);
+
+/* A tile is new in the image, and in what is kept. */
+void zt_reuse_stamp(zt_frame *frame, int tile);
 
 /* How far a pixel is from the nearest one that is rendered, along the longer axis; where that
  * is more than `most`, something more. */

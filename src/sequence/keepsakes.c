@@ -317,7 +317,8 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     k->expected_s = render_s;
     k->rendered_s += cost->render_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
-    if (fresh || !r->reuse->keeps || !last->whole || render_s < least_s(k)) return;
+    if (fresh || !r->reuse->keeps || !last->whole || last->at_edges) return;
+    if (render_s < least_s(k)) return;
     if (atomic_load(&k->making) && k->waited_s > patience * k->rendered_s) return;
     settle(k);
     if (k->failure) return;

@@ -31,8 +31,8 @@ static FILE *begin_film(const char *camera) {
     return file;
 }
 
-/* `samples`: how many, what is said of them, or "edges"; `radius` is that of the small thing, if
- * there is one; NULL: as it is written. */
+/* `samples`: how many, what is said of them, or "edges"; `radius` is that of the small thing,
+ * if there is one; NULL: as it is written. */
 static zt_animation *end_film(FILE *file, const char *samples, const char *radius) {
     must_be(fclose(file) == 0, "cannot write a film");
     bool edges = strcmp(samples, "edges") == 0;
