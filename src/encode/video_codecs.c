@@ -282,7 +282,7 @@ zt_status zt_video_configure(AVCodecContext *encoder, const zt_video_choice *cho
                              const zt_video_ear *ear) {
     const zt_codec *codec = choice->codec;
     const char *pixels = av_get_pix_fmt_name(choice->pixels);
-    encoder->thread_count = codec->thread_count;
+    encoder->thread_count = choice->thread_count;
     encoder->bit_rate = choice->bitrate;
     if (codec->tag && choice->container->has_boxes) encoder->codec_tag = codec->tag;
     for (const zt_codec_setting *s = codec->settings; s->name; s++) {
@@ -313,6 +313,10 @@ zt_status zt_video_choose(zt_video_choice *choice, const zt_output_format *forma
     if (!choice->container)
         return zt_video_refuse(ear, ZT_EUNSUPPORTED, "no movie has this ending");
     ZT_TRY(choose_codec(choice, ear));
+    choice->thread_count = choice->codec->thread_count;
+    if (choice->codec->threads_take_frames && format->frame_count > 0 &&
+        format->frame_count < choice->thread_count)
+        choice->thread_count = (int)format->frame_count;
     ZT_TRY(choose_pixels(choice, format->transparent, ear));
     ZT_TRY(choose_preset(choice, ear));
     ZT_TRY(choose_bitrate(choice, ear));

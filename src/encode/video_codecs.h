@@ -58,6 +58,7 @@ typedef struct zt_codec {
     const char *avx512_params; /* that "-params" among them have besides on processors with
                                   AVX-512; NULL: none */
     int thread_count;          /* fixed: what comes out may depend on it */
+    bool threads_take_frames;  /* each one of its own */
     uint32_t tag;              /* in MP4 and MOV; 0: by the muxer */
     bool alone;                /* each picture is encoded by itself, on one thread; what comes
                                   out depends on nothing before */
@@ -78,6 +79,7 @@ typedef struct zt_video_choice {
     enum AVPixelFormat pixels;
     const zt_codec_store *stored; /* of the codec's; NULL: it has pieces */
     const char *crf, *preset;     /* NULL: does not apply */
+    int thread_count;             /* the codec's, or as many as there are frames for */
     int64_t bitrate;              /* bits a second; 0: by crf, or by itself */
     const zt_output_option *options;
 } zt_video_choice;

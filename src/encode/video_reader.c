@@ -13,6 +13,11 @@ static int open_file(zt_video_reader *r, const char *path) {
     return error;
 }
 
+/* Where their number is known. */
+static bool has_few_frames(const AVStream *stream) {
+    return stream->nb_frames > 0 && stream->nb_frames < 8;
+}
+
 static int open_decoder(zt_video_reader *r, const char *name) {
     const AVCodecParameters *parameters = r->stream->codecpar;
     const AVCodec *codec =
@@ -26,7 +31,9 @@ static int open_decoder(zt_video_reader *r, const char *name) {
     if (error < 0) return error;
     r->decoder->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK;
     r->decoder->pkt_timebase = r->stream->time_base;
-    r->decoder->thread_count = 0; /* one a core: what is decoded does not depend on it */
+    /* One a core, but where they would take more than they give: what is decoded does not
+     * depend on it. */
+    r->decoder->thread_count = has_few_frames(r->stream) ? 1 : 0;
     return avcodec_open2(r->decoder, codec, NULL);
 }
 

@@ -66,6 +66,7 @@ const zt_codec zt_codecs[] = {
       * pixels: of the same film it makes other bits each time. */
      .avx512_params = "asm=MMX2,SSE,SSE2,SSSE3,SSE4.2,AVX,FMA3,AVX2,BMI1,BMI2,LZCNT",
      .thread_count = 4, /* takes a tenth more of the cores than one does */
+     .threads_take_frames = true,
      .bits_a_pixel = 0.1},
     {.name = "h265",
      .title = "H.265",
@@ -79,7 +80,8 @@ const zt_codec zt_codecs[] = {
      .preset_option = "preset",
      .preset = "veryfast",
      .settings = {{"x265-params", "log-level=none:open-gop=0:pools=4", NULL}},
-     .thread_count = 2, /* frames at a time; rows of each go to the pool */
+     .thread_count = 2, /* rows of each frame go to the pool */
+     .threads_take_frames = true,
      .tag = MKTAG('h', 'v', 'c', '1'),
      .bits_a_pixel = 0.06},
     {.name = "av1",
