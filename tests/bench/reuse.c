@@ -42,8 +42,8 @@ static zt_animation *end_film(FILE *file, const char *samples, const char *radiu
     return film_open(scratch_path("film.yaml"), overrides);
 }
 
-/* A hall of 1,000 things that stand still, eight lamps, a small ball that crosses it. */
-static void write_hall(FILE *file) {
+/* A hall of 1,000 things that stand still, and eight lamps. */
+static void write_still_hall(FILE *file) {
     fprintf(file, "lights:\n  - ambient: { intensity: 0.2 }\n");
     for (int i = 0; i < 8; i++)
         fprintf(file, "  - point: { position: [%g, 7.5, %g], intensity: 12 }\n",
@@ -68,6 +68,11 @@ static void write_hall(FILE *file) {
                 "  - sphere: { center: [%.4f, %.4f, %.4f], radius: %.4f, material: matte }\n",
                 x, size, z, size);
     }
+}
+
+/* The same with a small ball that crosses it. */
+static void write_hall(FILE *file) {
+    write_still_hall(file);
     fprintf(
         file,
         "  - sphere: { name: small, radius: 0.15, material: matte, center: { keys: { 0: [-6, "
@@ -75,15 +80,19 @@ static void write_hall(FILE *file) {
         "400: [6, 1.4, -4] } } }\n");
 }
 
-/* The documents' room with its mirrors, and a sphere that moves. */
+/* The documents' room with its mirrors. */
+static void write_still_room(FILE *file) {
+    fprintf(file, "%s  - sphere: { center: [1.7, 0.9, 0.3], radius: 0.9, material: ball }\n",
+            documents_room);
+}
+
+/* The same with a sphere that moves. */
 static void write_room(FILE *file) {
+    write_still_room(file);
     fprintf(
         file,
-        "%s"
-        "  - sphere: { center: [1.7, 0.9, 0.3], radius: 0.9, material: ball }\n"
         "  - sphere: { radius: 0.25, material: ball, center: { keys: { 0: [-1.6, 0.4, 0.6], "
-        "400: [0.2, 0.6, 1.4] } } }\n",
-        documents_room);
+        "400: [0.2, 0.6, 1.4] } } }\n");
 }
 
 /* All that there is moves, and the camera stands still. */
@@ -241,6 +250,32 @@ static void measure_edits(const char *still) {
     measure_edit("edit, camera stands, 16 samples", still, "16");
 }
 
+/* ---- held frames ----------------------------------------------------------------------------
+ */
+
+static spent program_run(void *user) { return run_program(user, 1); }
+
+/* Of a film in which nothing changes, to checksums: what all frames take more than the first.
+ */
+static void measure_held(const char *name, const char *camera, void (*write)(FILE *file)) {
+    enum { HELD = 399 };
+    if (wanted && !strstr(name, wanted)) return;
+    FILE *file = begin_film(camera);
+    write(file);
+    must_be(fclose(file) == 0, "cannot write a film");
+    char film[512];
+    snprintf(film, sizeof film, "%s", scratch_path("film.yaml"));
+#define RENDER(frames)                                                                         \
+    (char *[]){ZT_BENCH_PROGRAM, "render",      "-q", film,        "--frames",                 \
+               frames,           "--overwrite", "-o", "held.hash", NULL}
+    runner runners[] = {{.name = "one", .run = program_run, .user = RENDER("0")},
+                        {.name = "all", .run = program_run, .user = RENDER("0-399")}};
+    race(runners, 2, ROUNDS);
+    spent one = runners[0].median, all = runners[1].median;
+    printf("%-32s %8.2f ms, %.2f of processor time: at most 1 ms\n", name,
+           1e3 * (all.wall_s - one.wall_s) / HELD, 1e3 * (all.cpu_s - one.cpu_s) / HELD);
+}
+
 int main(int argc, char **argv) {
     static const char hall[] = "position: [0, 4, 6], look_at: [0, 1, -6], fov: 50 deg",
                       room[] =
@@ -265,5 +300,8 @@ int main(int argc, char **argv) {
     measure("everything moves, adaptive", room, write_storm, adaptive, "0.98 x");
     measure("everything moves, edges", room, write_storm, "edges", "0.98 x");
     measure_edits(hall);
+    printf("\nheld frames, milliseconds of wall time each, to checksums:\n");
+    measure_held("held, the documents' room", room, write_still_room);
+    measure_held("held, the hall of 1,000 things", hall, write_still_hall);
     return 0;
 }
