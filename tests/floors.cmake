@@ -55,6 +55,7 @@ set(doors
     "lua|keyframe/expression.c"
     "yaml.h|description/document.c"
     "embree|tracer/embree.c"
+    "immintrin.h|tracer/look.c"
     "libav|encode/video[a-z_]*.[ch]"
     "libsw|encode/video[a-z_]*.[ch]"
     "librsvg/|encode/raster.c")

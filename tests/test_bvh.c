@@ -22,8 +22,33 @@ enum { BOXES_MAX = 300 };
 
 static zt_bvh_builder *builder;
 
+/* Looking as each width of instructions that this machine has does it. */
+zt_bvh_look zt_bvh_look_single_scalar, zt_bvh_look_single_base;
+#if defined __x86_64__
+zt_bvh_look zt_bvh_look_single_avx2, zt_bvh_look_single_avx512;
+#endif
+static zt_bvh_look *looks[4];
+static int look_count, next_look;
+
+static void find_looks(void) {
+    looks[look_count++] = zt_bvh_look_single_scalar;
+    looks[look_count++] = zt_bvh_look_single_base;
+#if defined __x86_64__
+    if (__builtin_cpu_supports("avx2")) looks[look_count++] = zt_bvh_look_single_avx2;
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+        looks[look_count++] = zt_bvh_look_single_avx512;
+#endif
+}
+
+/* One width after the other. */
+static void look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_visit *visit, void *user) {
+    looks[next_look++ % look_count](bvh, rays, visit, user);
+}
+
 static int open_builder(void **state) {
     (void)state;
+    find_looks();
     return zt_bvh_open(&builder, 0, (zt_listener){0}) == ZT_OK ? 0 : -1;
 }
 
@@ -58,7 +83,7 @@ static uint32_t note_visit(void *user, int32_t box, int first, uint32_t lanes) {
 }
 
 /* Where ray i enters a box, with 64 bits; infinite where it does not before its far. What the
- * roundings of these let through or not is far less than what Embree allows for. */
+ * roundings of these let through or not is far less than what looking allows for. */
 static long double entry(const zt_bvh_rays *r, int i, const zt_bvh_box *box) {
     const float o[3] = {r->ox[i], r->oy[i], r->oz[i]}, d[3] = {r->dx[i], r->dy[i], r->dz[i]};
     long double enters = 0, leaves = (long double)r->far[i];
@@ -164,8 +189,7 @@ static void no_box_is_passed_by(void **state) {
         draw_rays(&m, &d, size);
         assert_int_equal(zt_bvh_of_boxes(&bvh, builder, m.boxes, m.box_count), ZT_OK);
         memset(m.visited, 0, sizeof m.visited);
-        zt_bvh_look(bvh, &m.rays, draw_below(&d, 2) ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED,
-                    note_visit, &m);
+        look(bvh, &m.rays, note_visit, &m);
         pairs += (int64_t)m.box_count * m.rays.count;
         bool near[ZT_BVH_RAYS];
         for (int i = 0; i < m.rays.count; i++) near[i] = is_near(&m, i);
@@ -231,7 +255,7 @@ static void rays_that_are_shortened_find_the_nearest(void **state) {
         }
         s.m = &m;
         m.visits = 0;
-        zt_bvh_look(bvh, &m.rays, round & 1 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED, shorten, &s);
+        look(bvh, &m.rays, shorten, &s);
         for (int i = 0; i < m.rays.count; i++)
             assert_true((float)s.nearest[i] == (float)expected[i]);
         visits += m.visits;
@@ -272,7 +296,7 @@ static void a_ray_that_is_done_visits_no_more(void **state) {
     line_up(&m);
     zt_bvh *bvh = NULL;
     assert_int_equal(zt_bvh_of_boxes(&bvh, builder, m.boxes, m.box_count), ZT_OK);
-    zt_bvh_look(bvh, &m.rays, ZT_BVH_COHERENT, finish, &m);
+    look(bvh, &m.rays, finish, &m);
     assert_int_equal(m.mistakes, 0);
     assert_int_equal(m.visits, 34 * 10 + 66);
     zt_bvh_free(&bvh);
@@ -292,7 +316,7 @@ static void rays_that_are_none_look_nowhere(void **state) {
     m.rays.far[44] = -1;
     m.rays.far[46] = NAN;
     m.rays.far[48] = .99f; /* ends before the first box */
-    zt_bvh_look(bvh, &m.rays, ZT_BVH_SCATTERED, note_visit, &m);
+    look(bvh, &m.rays, note_visit, &m);
     assert_int_equal(m.mistakes, 0);
     for (int i = 0; i < m.rays.count; i++)
         for (int32_t k = 0; k < m.box_count; k++)
@@ -312,7 +336,7 @@ static void boxes_that_are_none_are_left_out(void **state) {
     zt_bvh *bvh = NULL;
     memset(m.visited, 0, sizeof m.visited);
     assert_int_equal(zt_bvh_of_boxes(&bvh, builder, m.boxes, m.box_count), ZT_OK);
-    zt_bvh_look(bvh, &m.rays, ZT_BVH_COHERENT, note_visit, &m);
+    look(bvh, &m.rays, note_visit, &m);
     for (int32_t k = 0; k < 10; k++)
         assert_int_equal(m.visited[k][7], k != 2 && k != 3 && k != 5 && k != 9);
     zt_bvh_free(&bvh);
@@ -328,7 +352,7 @@ static void hierarchies_are_made_anew(void **state) {
         m.box_count = round * 7 % 11;
         for (int k = 0; k < 10; k++) m.boxes[k].low[0] += (float)round * 1e-3f;
         assert_int_equal(zt_bvh_of_boxes(&bvh, builder, m.boxes, m.box_count), ZT_OK);
-        zt_bvh_look(bvh, &m.rays, ZT_BVH_COHERENT, note_visit, &m);
+        look(bvh, &m.rays, note_visit, &m);
         assert_int_equal(m.mistakes, 0);
         assert_int_equal(m.visits, m.rays.count * m.box_count);
     }
@@ -349,7 +373,7 @@ static uint32_t visit_nest(void *user, int32_t box, int first, uint32_t lanes) {
     line_up(n->inside);
     for (int i = 0; i < n->inside->rays.count; i++)
         if (i >= ZT_BVH_LANES || !(lanes >> i & 1)) n->inside->rays.far[i] = -1;
-    zt_bvh_look(n->inner, &n->inside->rays, ZT_BVH_SCATTERED, note_visit, n->inside);
+    look(n->inner, &n->inside->rays, note_visit, n->inside);
     n->outer.mistakes += n->inside->mistakes;
     n->outer.mistakes += n->inside->visits != 10 * __builtin_popcount(lanes);
     return 0;
@@ -365,7 +389,7 @@ static void visitors_may_look_further(void **state) {
     assert_int_equal(zt_bvh_of_boxes(&inner, builder, n.outer.boxes, 10), ZT_OK);
     assert_int_equal(zt_bvh_of_boxes(&outer, builder, n.outer.boxes, 10), ZT_OK);
     n.inner = inner;
-    zt_bvh_look(outer, &n.outer.rays, ZT_BVH_COHERENT, visit_nest, &n);
+    look(outer, &n.outer.rays, visit_nest, &n);
     assert_int_equal(n.outer.mistakes, 0);
     assert_int_equal(n.outer.visits, n.outer.rays.count * 10);
     zt_bvh_free(&inner);
@@ -514,7 +538,7 @@ static void shoot_closed(closed_mesh mesh, double shift, int64_t rays) {
     int64_t through = 0, shots = 0;
     for (; shots < rays; shots += ZT_BVH_RAYS) {
         aim(&s, &mesh, &d, shift);
-        zt_bvh_look(bvh, &s.rays, ZT_BVH_SCATTERED, meet, &s);
+        look(bvh, &s.rays, meet, &s);
         for (int i = 0; i < ZT_BVH_RAYS; i++) through += s.triangle[i] < 0;
         /* A convex body is met where was aimed, and not behind. */
         for (int i = 0; i < ZT_BVH_RAYS && !mesh.ring; i++) through += !(s.rays.far[i] < 1.01f);
@@ -564,7 +588,7 @@ static void triangles_are_met_by_index(void **state) {
         for (int round = 0; round < 40; round++) {
             aim(&s, &m, &d, 0);
             all = s;
-            zt_bvh_look(bvh, &s.rays, (zt_bvh_kind)(round & 1), meet, &s);
+            look(bvh, &s.rays, meet, &s);
             for (int32_t box = 0; box < clusters.count; box++)
                 for (int first = 0; first < ZT_BVH_RAYS; first += ZT_BVH_LANES)
                     meet(&all, box, first, 0xffff);

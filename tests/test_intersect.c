@@ -362,7 +362,7 @@ static void intersect(const zt_tracer *tracer) {
     zt_bundle bundle = {.origins = zt_range3(from.x, from.y, from.z, rays.count),
                         .directions = zt_range3(rays.dx, rays.dy, rays.dz, rays.count),
                         .source = -1};
-    ZT_KERNEL_NAME(zt_intersect)(&rays, &bundle, tracer, ZT_BVH_SCATTERED);
+    ZT_KERNEL_NAME(zt_intersect)(&rays, &bundle, tracer);
 }
 
 /* A turned, stretched, sheared and moved cube of triangles, met from everywhere: never missed

@@ -47,8 +47,3 @@ zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_bo
 void zt_bvh_free(zt_bvh **bvh) {
     if (*bvh) (*bvh)->door->free(bvh);
 }
-
-void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
-                 void *user) {
-    bvh->door->look(bvh, rays, kind, visit, user);
-}

@@ -1,5 +1,7 @@
-/* Bounding volume hierarchies over boxes: which rays may meet what is in which box. The door to
- * Embree, a module that is loaded when the first hierarchy is built.
+/* Bounding volume hierarchies over boxes: which rays may meet what is in which box. Embree
+ * builds them, a module that is loaded when the first one is built; rays look into them in
+ * groups (tracer/look.c), which for boxes with anything in them is quicker than Embree's own
+ * way.
  *
  * What is in a box, and where a ray meets it, is the caller's: rays are single precision in a
  * space of his choice and only tell where to look, so that what is met depends on nothing here.
@@ -52,15 +54,14 @@ zt_status zt_bvh_of_boxes(zt_bvh **bvh, zt_bvh_builder *builder, const zt_bvh_bo
                           int32_t box_count);
 void zt_bvh_free(zt_bvh **bvh);
 
-/* How the rays run: close together from about one place, or anyhow. Only speed depends on it.
- */
-typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
-
-/* Calls `visit` for boxes that rays may meet before their `far`, with those of the rays
+/* What is called for boxes that rays may meet before their `far`, with those of the rays
  * first .. first + 15 whose bits are set in `lanes`: the lowest bit for ray number `first`, a
- * multiple of 16. The visitor may make `far` of those rays less, 0 or negative to be done with
- * a ray, and returns which ones' it made; it may look into another hierarchy. Boxes come in
- * about the order of distance, some of them though no ray meets them.
+ * multiple of 16. It may make `far` of those rays less, 0 or negative to be done with a ray,
+ * and returns which ones' it made; it may look into another hierarchy. */
+typedef uint32_t zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
+
+/* Looking (tracer/look.h): calls `visit` for boxes in about the order of distance, some of them
+ * though no ray meets them.
  *
  * No box is passed by that a ray, its numbers taken as exact, touches before `far`, for origins
  * within 2^26 times the size of what all boxes make up (or 2^2 times their largest coordinate).
@@ -68,8 +69,6 @@ typedef enum zt_bvh_kind { ZT_BVH_COHERENT, ZT_BVH_SCATTERED } zt_bvh_kind;
  * giants and dwarfs should not share a hierarchy. Roundings of the numbers themselves are the
  * caller's to allow for, by larger boxes, or by moving origins near in double precision first.
  */
-typedef uint32_t zt_bvh_visit(void *user, int32_t box, int first, uint32_t lanes);
-void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_kind kind, zt_bvh_visit *visit,
-                 void *user);
+typedef void zt_bvh_look(const zt_bvh *bvh, zt_bvh_rays *rays, zt_bvh_visit *visit, void *user);
 
 #endif

@@ -133,7 +133,7 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
         zt_bundle bundle = bundle_around(w, around, w->points.source);
         *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
-        intersect(&w->rays, &bundle, tracer, depth == 0 ? ZT_BVH_COHERENT : ZT_BVH_SCATTERED);
+        intersect(&w->rays, &bundle, tracer);
         if (given->wants_cover && depth == 0) deliver_cover(light, w);
         if (given->footprint) zt_tread_rays(given->footprint, depth, &bundle, &w->rays, tracer);
         keep_hits(w, tracer);

@@ -11,10 +11,10 @@
 #include "tracer/bvh.h"
 
 /* Corner 0, 1 and 2 of each triangle, by axis: corners[corner][axis][triangle]. Where there are
- * fewer than eight, the last one is there again. */
-enum { ZT_CLUSTER = 8 };
+ * fewer than sixteen, the last one is there again. */
+enum { ZT_CLUSTER = 16 };
 typedef struct zt_cluster {
-    alignas(32) float corners[3][3][ZT_CLUSTER];
+    alignas(64) float corners[3][3][ZT_CLUSTER];
     int32_t triangles[ZT_CLUSTER]; /* which of the mesh */
 } zt_cluster;
 

@@ -118,7 +118,7 @@ bool ZT_KERNEL_NAME(zt_may_meet)(zt_bundle *b, const zt_tracer *tracer) {
 }
 
 void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
-                                  const zt_tracer *tracer, zt_bvh_kind kind) {
+                                  const zt_tracer *tracer) {
     int padded = zt_batch_padded(rays->count);
     for (int i = 0; i < padded; i++) {
         rays->t[i] = REAL_INFINITY;
@@ -135,7 +135,7 @@ void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
             nearest_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
     }
     if (tracer->placed_count > 0 || tracer->crowd_count > 0)
-        ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer, kind);
+        ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer);
 }
 
 void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,

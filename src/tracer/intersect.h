@@ -10,7 +10,7 @@
  * and part; hit is -1 and t infinite where there is none. Of hits that are as near as roundings
  * can tell the first object's counts. */
 void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
-                                  const zt_tracer *tracer, zt_bvh_kind kind);
+                                  const zt_tracer *tracer);
 
 /* Whether something lies between origin and t (given), and not at t itself as far as roundings
  * can tell: hit, given as -1, stays so where nothing does. */

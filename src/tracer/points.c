@@ -105,6 +105,17 @@ static int list_kind(int32_t *restrict list, const zt_points *restrict w,
     return count;
 }
 
+/* Lists the points that lie on meshes. */
+static int list_meshes(int32_t *restrict list, const zt_points *restrict w) {
+    int32_t any = 0, count = 0;
+    for (int k = 0; k < w->count; k++) any |= w->closed[k];
+    for (int k = 0; any < 0 && k < w->count; k++) {
+        list[count] = k;
+        count += w->closed[k] < 0;
+    }
+    return count;
+}
+
 #define DEFINE_SOLID(kind)                                                                     \
     static void kind##_surfaces(zt_points *restrict w, zt_origins *restrict from,              \
                                 const zt_tracer *tracer, const int32_t *restrict list,         \
@@ -388,7 +399,7 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     for (zt_primitive_kind kind = ZT_PRIMITIVE_BALL; kind < ZT_PRIMITIVE_KIND_COUNT; kind++)
         if (kinds >> kind & 1)
             solids[kind](w, from, tracer, list, list_kind(list, w, tracer, kind));
-    if (tracer->placed_count > 0) mesh_count = list_kind(list, w, tracer, ZT_PRIMITIVE_MESH);
+    if (tracer->placed_count > 0) mesh_count = list_meshes(list, w);
     find_meshes(w, rays, tracer, list, mesh_count);
     if (tracer->has_patterns) weave(w, from, tracer);
     if (tracer->changes) ZT_KERNEL_NAME(zt_change_patterns)(w, from, tracer);

@@ -75,7 +75,7 @@ void ZT_KERNEL_NAME(zt_work_probe)(const zt_tracer *tracer, zt_probe *probes, in
         probes[i].lit = 0;
     }
     zt_bundle bundle = bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
-    ZT_KERNEL_NAME(zt_intersect)(&w->rays, &bundle, tracer, ZT_BVH_SCATTERED);
+    ZT_KERNEL_NAME(zt_intersect)(&w->rays, &bundle, tracer);
     ZT_KERNEL_NAME(zt_work_keep_hits)(w, tracer);
     if (w->rays.count == 0) return;
     ZT_KERNEL_NAME(zt_points_find)(&w->points, &w->rays, tracer);

@@ -6,7 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "tracer/look.h"
 #include "tracer/triangles.h"
+
+#define look ZT_KERNEL_NAME(zt_bvh_look)
 
 /* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
  * distances; and how long before the box around all there is its rays begin, as a share of its
@@ -19,9 +22,9 @@
  * quicker to ask them all about one triangle than one about all triangles of a cluster: where
  * only four numbers are computed at a time, never. */
 #if defined __AVX2__
-enum { HULL_LEVEL = 3, LANES_WORTH = 4 };
+enum { HULL_LEVEL = 2, LANES_WORTH = 8 };
 #else
-enum { HULL_LEVEL = 3, LANES_WORTH = ZT_BATCH_LANES + 1 };
+enum { HULL_LEVEL = 2, LANES_WORTH = ZT_BATCH_LANES + 1 };
 #endif
 
 enum { GROUPS = ZT_BATCH / ZT_BATCH_LANES };
@@ -297,13 +300,13 @@ static void take(const search *restrict s) {
 }
 
 /* The groups that were packed, against the mesh. */
-static void search_mesh(search *s, zt_bvh_kind kind) {
+static void search_mesh(search *s) {
     const int count = s->packed.count;
     if (count == 0) return;
     zt_lean_rays(&s->leaning, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, count);
     for (int at = 0; at < count; at += ZT_BATCH_LANES)
         s->alike[at / ZT_BATCH_LANES] = zt_lean_alike(&s->leaning, at);
-    zt_bvh_look(s->placed->built->bvh, &s->packed, kind, visit_cluster, s);
+    look(s->placed->built->bvh, &s->packed, visit_cluster, s);
     take(s);
 }
 
@@ -325,7 +328,6 @@ typedef struct crowd_search {
     const zt_tracer *tracer;
     const zt_crowd *crowd;
     bool any;
-    zt_bvh_kind kind;
     real begin[ZT_BATCH]; /* where, along each ray, the hierarchy's begins */
     zt_bvh_rays packed;
 } crowd_search;
@@ -341,7 +343,7 @@ static uint32_t visit_primitive(void *user, int32_t box, int first, uint32_t set
         search s;
         begin_search(&s, rays, c->tracer, index, c->any);
         pack(&s, first, set);
-        search_mesh(&s, c->kind);
+        search_mesh(&s);
     } else {
         ZT_KERNEL_NAME(zt_meet_lanes)(rays, c->tracer, index, first, c->any);
     }
@@ -365,13 +367,12 @@ static inline real enter_box(const zt_box *b, real ox, real oy, real oz, real dx
 }
 
 static void search_crowd(zt_batch *rays, const zt_tracer *tracer, const zt_crowd *crowd,
-                         bool any, zt_bvh_kind kind) {
+                         bool any) {
     crowd_search c;
     c.rays = rays;
     c.tracer = tracer;
     c.crowd = crowd;
     c.any = any;
-    c.kind = kind;
     const zt_origins *from = rays->from;
     const real before = BEFORE * zt_box_size(&crowd->box);
     c.packed.count = rays->count;
@@ -389,16 +390,16 @@ static void search_crowd(zt_batch *rays, const zt_tracer *tracer, const zt_crowd
         c.packed.dz[i] = (float)dz;
         c.packed.far[i] = looks ? (float)(rays->t[i] - begin) * LOOK_FURTHER : -1;
     }
-    zt_bvh_look(crowd->bvh, &c.packed, kind, visit_primitive, &c);
+    look(crowd->bvh, &c.packed, visit_primitive, &c);
 }
 
 /* ---- both -----------------------------------------------------------------------------------
  */
 
 static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer *tracer,
-                       bool any, zt_bvh_kind kind) {
+                       bool any) {
     for (int i = 0; i < tracer->crowd_count; i++)
-        search_crowd(rays, tracer, &tracer->crowds[i], any, kind);
+        search_crowd(rays, tracer, &tracer->crowds[i], any);
     for (int32_t k = 0; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
@@ -406,16 +407,16 @@ static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer 
         search s;
         begin_search(&s, rays, tracer, index, any);
         for (int first = 0; first < rays->count; first += ZT_BATCH_LANES) pack(&s, first, ~0u);
-        search_mesh(&s, kind);
+        search_mesh(&s);
     }
 }
 
 void ZT_KERNEL_NAME(zt_search_nearest)(zt_batch *rays, const zt_bundle *bundle,
-                                       const zt_tracer *tracer, zt_bvh_kind kind) {
-    search_all(rays, bundle, tracer, false, kind);
+                                       const zt_tracer *tracer) {
+    search_all(rays, bundle, tracer, false);
 }
 
 void ZT_KERNEL_NAME(zt_search_any)(zt_batch *rays, const zt_bundle *bundle,
                                    const zt_tracer *tracer) {
-    search_all(rays, bundle, tracer, true, ZT_BVH_COHERENT);
+    search_all(rays, bundle, tracer, true);
 }

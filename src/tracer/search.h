@@ -7,7 +7,7 @@
 
 /* Adds to what a batch has met so far. */
 void ZT_KERNEL_NAME(zt_search_nearest)(zt_batch *rays, const zt_bundle *bundle,
-                                       const zt_tracer *tracer, zt_bvh_kind kind);
+                                       const zt_tracer *tracer);
 void ZT_KERNEL_NAME(zt_search_any)(zt_batch *rays, const zt_bundle *bundle,
                                    const zt_tracer *tracer);
 
