@@ -215,6 +215,85 @@ static void stretched(void **state) {
     }
 }
 
+/* A mesh in a group is stretched as solids are. */
+static void stretched_mesh(void **state) {
+    (void)state;
+    static const float positions[] = {0, 0, 0, 1, 2, 0, 0, 2, 1, 0};
+    static const uint32_t triangle[] = {0, 1, 2};
+    static const zt_mesh mesh = {.positions = positions,
+                                 .triangles = triangle,
+                                 .vertex_count = 3,
+                                 .triangle_count = 1,
+                                 .high = {1, 2, 1}};
+    const double flat[] = {.05, 1e-4};
+    for (int i = 0; i < 2; i++) {
+        begin();
+        s.scene.meshes = &mesh;
+        s.scene.mesh_count = 1;
+        zt_object *o = scene_object(&s, ZT_SHAPE_MESH, 0);
+        o->mesh = 0;
+        o->placement = (zt_placement){{0, 0, -5}, {1, 0, 0, 0}, {1, flat[i], 1}};
+        zt_accuracy a = judged();
+        assert_int_equal(a.reason, i ? ZT_ACCURACY_STRETCH : ZT_ACCURACY_FINE);
+        if (i) assert_float_equal(a.number, 1e4, 1e-3);
+    }
+}
+
+/* Grains in the distance, which a pixel does not show, may still be met on their far sides; a
+ * sphere does not need its sides told apart. */
+static void thin(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        for (int kind = 0; kind < 3; kind++) {
+            double size = i ? 1e-4 : .05, tube = i ? 2e-5 : .01;
+            begin();
+            if (kind == 0)
+                scene_object(&s, ZT_SHAPE_BOX, 0)->box =
+                    (zt_block){{0, 0, -50}, {size, size, size}, {1, 0, 0, 0}};
+            else if (kind == 1)
+                scene_object(&s, ZT_SHAPE_TORUS, 0)->torus =
+                    (zt_torus){{0, 0, -50}, {0, 1, 0}, .1, tube};
+            else
+                scene_sphere(&s, (vec3){0, 0, -50}, size, 0);
+            zt_accuracy a = judged();
+            assert_int_equal(a.reason, i && kind < 2 ? ZT_ACCURACY_THIN : ZT_ACCURACY_FINE);
+            if (a.reason == ZT_ACCURACY_FINE) continue;
+            assert_float_equal(a.distance, kind ? 2 * tube : size, 1e-9);
+            assert_int_equal(ready_for(ZT_PRECISION_AUTO).beyond.reason, ZT_ACCURACY_FINE);
+        }
+}
+
+/* Of double precision as well it is told where it is not enough: on a ground of 10^15, for a
+ * member as far from its group's origin, and as far from the world's origin; and for numbers
+ * that have no squares. */
+static void beyond_double(void **state) {
+    (void)state;
+    const double sizes[] = {1e10, 1e15};
+    for (int i = 0; i < 2; i++)
+        for (int kind = 0; kind < 4; kind++) {
+            double far = sizes[i];
+            sphere_ground(kind == 0 ? far : 10, 2);
+            if (kind == 1) {
+                begin();
+                scene_object(&s, ZT_SHAPE_GROUP, -1)->placement =
+                    (zt_placement){{-far, 0, -5}, {1, 0, 0, 0}, {1, 1, 1}};
+                scene_sphere(&s, (vec3){far, 0, 0}, 1, 0);
+                s.objects[1].parent = 0;
+            } else if (kind == 2) {
+                s.scene.camera.position.x = far;
+                for (int k = 0; k < 2; k++) s.objects[k].sphere.center.x = far;
+            } else if (kind == 3) {
+                scene_plane(&s, (vec3){0, 0, 1}, -pow(far, 6), 0);
+            }
+            zt_accuracy a = ready_for(ZT_PRECISION_DOUBLE).beyond;
+            assert_int_equal(a.reason, !i          ? ZT_ACCURACY_FINE
+                                       : kind == 3 ? ZT_ACCURACY_RANGE
+                                                   : ZT_ACCURACY_NEAR);
+            if (!i || kind == 3) continue;
+            assert_float_equal(a.number / far, kind == 0 ? 2 : 1, .001);
+        }
+}
+
 static void mirrors(void **state) {
     (void)state;
     const struct {
@@ -290,6 +369,9 @@ int main(void) {
         cmocka_unit_test(standing),
         cmocka_unit_test(out_of_range),
         cmocka_unit_test(stretched),
+        cmocka_unit_test(stretched_mesh),
+        cmocka_unit_test(thin),
+        cmocka_unit_test(beyond_double),
         cmocka_unit_test(mirrors),
         cmocka_unit_test(in_a_room),
         cmocka_unit_test(far_from_the_origin),

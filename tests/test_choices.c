@@ -143,6 +143,19 @@ static void reasons(void **state) {
          "      objects:\n"
          "        - sphere: { name: coin, center: [0, 0, 0], radius: 1, material: clay }\n",
          "double precision: coin is stretched 1e+09 times more one way than another", 4},
+        {"camera: { position: [0, 0, 50] }\n"
+         "objects:\n"
+         "  - box: { name: grain, center: [0, 0, 0], size: 1e-4, material: clay }\n",
+         "double precision: grain is 0.0001 thin and its numbers reach 50; single precision "
+         "would be off by 4.8e-05",
+         4},
+        {"camera: { position: [1e15, 0, 10] }\n"
+         "objects:\n"
+         "  - sphere: { name: moon, center: [1e15, 0, 0], radius: 1, material: clay }\n",
+         "double precision, though the camera is 9 from moon, whose numbers reach 1e+15; "
+         "double "
+         "precision would be off by 0.22, and",
+         4},
         {"camera: { position: [0, 0, 10] }\n"
          "objects:\n"
          "  - plane: { name: wall, normal: [0, 0, 1], material: mirror }\n",
@@ -186,6 +199,31 @@ static void warned_once(void **state) {
         zt_image_free(&image);
         zt_renderer_close(&renderer);
     }
+    zt_animation_free(&animation);
+}
+
+/* Nor is it left unsaid where double precision is not enough: once, for the film. */
+static void warned_beyond(void **state) {
+    (void)state;
+    zt_animation *animation =
+        film_with("shutter: 0", "  - group:\n"
+                                "      position: [-1e15, 0, 0]\n"
+                                "      objects:\n"
+                                "        - sphere: { name: ball, center: [1e15, 0, 0], "
+                                "radius: 1, material: {} }\n");
+    static told heard;
+    heard = (told){0};
+    zt_renderer *renderer = renderer_of(animation, ZT_PRECISION_AUTO, &heard);
+    zt_image *image;
+    assert_int_equal(zt_image_create(&image, 96, 54), ZT_OK);
+    for (int64_t frame = 0; frame < 2; frame++)
+        assert_int_equal(zt_renderer_frame(renderer, frame, image, NULL), ZT_OK);
+    assert_int_equal(heard.warning_count, 1);
+    assert_non_null(strstr(heard.lines,
+                           "warning: frame 0 asks for more than double precision: "
+                           "the camera is 9 from ball, whose numbers reach 1e+15"));
+    zt_image_free(&image);
+    zt_renderer_close(&renderer);
     zt_animation_free(&animation);
 }
 
@@ -288,9 +326,10 @@ static void too_fast(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(by_frame),    cmocka_unit_test(reasons),
-        cmocka_unit_test(warned_once), cmocka_unit_test(ordinary_films),
-        cmocka_unit_test(moments),     cmocka_unit_test(too_fast),
+        cmocka_unit_test(by_frame),       cmocka_unit_test(reasons),
+        cmocka_unit_test(warned_once),    cmocka_unit_test(warned_beyond),
+        cmocka_unit_test(ordinary_films), cmocka_unit_test(moments),
+        cmocka_unit_test(too_fast),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,55 +11,59 @@
 /* ---- precision ------------------------------------------------------------------------------
  */
 
-/* What asks for double precision. */
-static void say_why(char *text, size_t size, const zt_accuracy *a, const zt_scene *scene,
-                    const zt_animation *animation) {
+/* What asks for more than a precision. */
+static void say_why(char *text, size_t size, const zt_accuracy *a, zt_precision precision,
+                    const zt_scene *scene, const zt_animation *animation) {
+    const char *digits = zt_precision_name(precision);
     const char *name = a->object < 0 ? "" : zt_advice_name_of_object(animation, a->object).text;
     switch (a->reason) {
     case ZT_ACCURACY_NEAR:
         snprintf(text, size,
-                 "the camera is %.3g from %s, whose numbers reach %.4g; single precision would "
+                 "the camera is %.3g from %s, whose numbers reach %.4g; %s precision would "
                  "be off by %.2g, and %.2g can be seen",
-                 a->distance, name, a->number, a->wrong, a->seen);
+                 a->distance, name, a->number, digits, a->wrong, a->seen);
         break;
     case ZT_ACCURACY_NARROW:
-        snprintf(
-            text, size,
-            "%s is %.3g from the camera, in a view so narrow that %.2g can be seen; single "
-            "precision would be off by %.2g",
-            name, a->distance, a->seen, a->wrong);
+        snprintf(text, size,
+                 "%s is %.3g from the camera, in a view so narrow that %.2g can be seen; %s "
+                 "precision would be off by %.2g",
+                 name, a->distance, a->seen, digits, a->wrong);
         break;
     case ZT_ACCURACY_LAMP:
         snprintf(text, size,
-                 "%s is %.3g from %s, whose numbers reach %.4g; single precision would be off "
+                 "%s is %.3g from %s, whose numbers reach %.4g; %s precision would be off "
                  "by %.2g",
                  zt_advice_name_of(animation, ZT_OWNER_POINT, a->other).text, a->distance, name,
-                 a->number, a->wrong);
+                 a->number, digits, a->wrong);
         break;
     case ZT_ACCURACY_TWIN:
-        snprintf(
-            text, size,
-            "%s and %s are %.3g apart and their numbers reach %.4g; single precision would "
-            "be off by %.2g",
-            name, zt_advice_name_of_object(animation, a->other).text, a->distance, a->number,
-            a->wrong);
+        snprintf(text, size,
+                 "%s and %s are %.3g apart and their numbers reach %.4g; %s precision would "
+                 "be off by %.2g",
+                 name, zt_advice_name_of_object(animation, a->other).text, a->distance,
+                 a->number, digits, a->wrong);
         break;
     case ZT_ACCURACY_RANGE:
-        snprintf(text, size,
-                 "of %s a number is %.3g, whose square single precision cannot hold", name,
-                 a->number);
+        snprintf(text, size, "of %s a number is %.3g, whose square %s precision cannot hold",
+                 name, a->number, digits);
         break;
     case ZT_ACCURACY_STRETCH:
         snprintf(text, size,
-                 "%s is stretched %.3g times more one way than another, and single precision "
+                 "%s is stretched %.3g times more one way than another, and %s precision "
                  "has no digits left for it",
-                 name, a->number);
+                 name, a->number, digits);
+        break;
+    case ZT_ACCURACY_THIN:
+        snprintf(text, size,
+                 "%s is %.3g thin and its numbers reach %.4g; %s precision would be off by "
+                 "%.2g",
+                 name, a->distance, a->number, digits, a->wrong);
         break;
     case ZT_ACCURACY_MIRRORS:
         snprintf(text, size,
                  "rays may meet %" PRId32 " mirrors one after the other, and the roundings of "
-                 "single precision would add up",
-                 scene->reflection_depth);
+                 "%s precision would add up",
+                 scene->reflection_depth, digits);
         break;
     case ZT_ACCURACY_FINE:
         snprintf(text, size, "its roundings stay below what can be seen");
@@ -67,21 +71,26 @@ static void say_why(char *text, size_t size, const zt_accuracy *a, const zt_scen
     }
 }
 
+/* What asks for more than the precision that was chosen. */
+static const zt_accuracy *lack_of(const zt_ready *ready) {
+    return ready->precision == ZT_PRECISION_SINGLE ? &ready->accuracy : &ready->beyond;
+}
+
 static void say_precision(zt_frame_choices *choices, const zt_renderer *r,
                           const zt_ready *ready, const zt_scene *scene) {
-    const zt_accuracy *a = &ready->accuracy;
-    const size_t size = sizeof choices->precision_text;
+    const bool lacks = lack_of(ready)->reason != ZT_ACCURACY_FINE;
+    const bool asked = r->precision != ZT_PRECISION_AUTO;
     char why[256];
-    say_why(why, sizeof why, a, scene, r->animation);
+    say_why(why, sizeof why, lacks ? lack_of(ready) : &ready->accuracy,
+            lacks ? ready->precision : ZT_PRECISION_SINGLE, scene, r->animation);
+    const bool silent = r->precision == ZT_PRECISION_DOUBLE && !lacks;
     choices->precision = ready->precision;
-    if (r->precision == ZT_PRECISION_DOUBLE)
-        snprintf(choices->precision_text, size, "double precision, as asked for");
-    else if (r->precision == ZT_PRECISION_SINGLE)
-        snprintf(choices->precision_text, size, "single precision, as asked for%s%s",
-                 a->reason == ZT_ACCURACY_FINE ? ": " : ", though ", why);
-    else
-        snprintf(choices->precision_text, size, "%s precision: %s",
-                 ready->precision == ZT_PRECISION_SINGLE ? "single" : "double", why);
+    snprintf(choices->precision_text, sizeof choices->precision_text, "%s precision%s%s%s",
+             zt_precision_name(ready->precision), asked ? ", as asked for" : "",
+             silent  ? ""
+             : lacks ? ", though "
+                     : ": ",
+             silent ? "" : why);
 }
 
 /* ---- motion ---------------------------------------------------------------------------------
@@ -131,9 +140,13 @@ static uint64_t add_thing(uint64_t key, zt_part_thing thing) {
 }
 
 /* What the sentences are about; of moments, about how many. */
-static int64_t cause_of(const zt_accuracy *a, const zt_division *d) {
-    uint64_t key = zt_random_key(a->reason, (uint64_t)a->object);
-    key = zt_random_key(key, (uint64_t)a->other);
+static int64_t cause_of(const zt_ready *ready, const zt_division *d) {
+    uint64_t key = 0;
+    for (int i = 0; i < 2; i++) {
+        const zt_accuracy *a = i ? &ready->beyond : &ready->accuracy;
+        key = zt_random_key(zt_random_key(key, a->reason), (uint64_t)a->object);
+        key = zt_random_key(key, (uint64_t)a->other);
+    }
     key = zt_random_key(key, (uint64_t)ilogb(d->moment_count));
     if (d->asked) key = add_thing(key, d->most);
     if (d->off > 0) key = add_thing(key, d->worst);
@@ -146,17 +159,18 @@ void zt_renderer_say(zt_frame_choices *choices, const zt_renderer *r, const zt_r
     say_precision(choices, r, ready, exposure->moments);
     say_motion(choices->motion_text, sizeof choices->motion_text, division, r->animation);
     choices->moment_count = exposure->moment_count;
-    choices->cause = cause_of(&ready->accuracy, division);
+    choices->cause = cause_of(ready, division);
 }
 
 void zt_renderer_doubt(zt_renderer *r, const zt_ready *ready, const zt_exposure *exposure,
                        const zt_division *division, int64_t frame) {
     bool single = ready->precision == ZT_PRECISION_SINGLE;
+    const zt_accuracy *a = lack_of(ready);
     char why[256];
-    if (single && ready->accuracy.reason != ZT_ACCURACY_FINE && !r->told_precision) {
-        say_why(why, sizeof why, &ready->accuracy, exposure->moments, r->animation);
-        zt_tell(r->listener, ZT_WARNING, "frame %" PRId64 " asks for double precision: %s",
-                frame, why);
+    if (a->reason != ZT_ACCURACY_FINE && !r->told_precision) {
+        say_why(why, sizeof why, a, ready->precision, exposure->moments, r->animation);
+        zt_tell(r->listener, ZT_WARNING, "frame %" PRId64 " asks for %s precision: %s", frame,
+                single ? "double" : "more than double", why);
         r->told_precision = true;
     }
     if (division->off > 1 && !r->told_motion) {

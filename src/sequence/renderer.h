@@ -45,7 +45,7 @@ struct zt_renderer {
     const struct zt_manifest
         *followed;       /* whose samples frames take; NULL: none's. Not its own */
     zt_pacing *pacing;   /* of a budget; NULL: none */
-    bool told_precision; /* that single precision, which was asked for, is not enough */
+    bool told_precision; /* that the precision is not enough */
     bool told_motion;    /* that something moves too fast */
 };
 

@@ -7,52 +7,60 @@
 
 #include "base/diag.h"
 
-/* A thing's place is known to within this many roundings of single precision of the largest
- * number in its arithmetic: subtraction from the camera, intersection and projection together
- * stay below. */
-#define WRONG (16 * 0x1p-24)
-
-/* What may be seen of that: an eighth of a pixel; and a sixty-fourth of the way to a lamp, by
- * which its light changes by a thirtieth. */
+/* What may be seen of a thing's being off: an eighth of a pixel; and a sixty-fourth of the way
+ * to a lamp, by which its light changes by a thirtieth. */
 #define SEEN      (1.0 / 8)
 #define SEEN_LAMP (1.0 / 64)
 
-/* Solids that are stretched more are not met to 1e-6 any more, as tests/extremes measures. */
-#define STRETCH_MAX 1000
+/* Solids are not told from their own other sides where they are thinner than so many times what
+ * is wrong. */
+#define THIN 16
 
-/* Squares of larger numbers, or of smaller ones, leave the range of single precision. */
-#define LARGEST 1e15
-#define LEAST   1e-15
-
-/* After so many mirrors the roundings of each have added up to what one surface's are. */
-enum { MIRRORS_MAX = 64 };
+/* What a precision holds. */
+typedef struct digits {
+    double wrong; /* a thing's place is known to within this share of the largest number in its
+                     arithmetic: subtraction from the camera, intersection and projection
+                     together stay below 16 roundings */
+    double stretch;        /* what is stretched more has no digits left (tests/extremes) */
+    double largest, least; /* squares of larger numbers, or of smaller ones, leave the range */
+    int32_t mirrors; /* after so many the roundings of each add up to what one surface's are */
+} digits;
+#define WRONG (16 * 0x1p-24)
+static const digits single_digits = {WRONG, 1e3, 1e15, 1e-15, 64},
+                    double_digits = {16 * 0x1p-53, 1e12, 1e75, 1e-75, INT32_MAX};
 
 /* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
  * double precision can tell. Looked for among so many at most. */
 #define SAME 0x1p-44
 enum { TWINS_MAX = 8192, SURFACES_MAX = 7, PAIRS_MAX = 20000 };
 
-static zt_accuracy judge_one(const zt_extent *e, zt_pixel pixel) {
+static zt_accuracy judge_one(const zt_extent *e, zt_pixel pixel, const digits *d) {
     double size = fmax(e->size, pixel.reach), near = fmax(e->near - pixel.reach, 0);
+    double wrong = d->wrong * e->stretch * size, grain = near > 0 ? e->grain : 0;
     zt_accuracy a = {.object = e->object,
                      .other = -1,
-                     .wrong = WRONG * e->stretch * size,
+                     .wrong = wrong + grain,
                      .seen = SEEN * (pixel.width + pixel.angle * near),
                      .distance = near,
-                     .number = size};
-    if (!(e->stretch < STRETCH_MAX)) {
+                     .number = grain > wrong ? grain / ZT_GRAIN : size};
+    if (!(e->stretch < d->stretch)) {
         a.reason = ZT_ACCURACY_STRETCH;
         a.number = e->stretch;
-    } else if (!(size < LARGEST) || e->least < LEAST) {
+    } else if (!(size < d->largest) || e->least < d->least) {
         a.reason = ZT_ACCURACY_RANGE;
-        a.number = e->least < LEAST ? e->least : size;
+        a.number = e->least < d->least ? e->least : size;
     } else if (a.wrong > a.seen) {
-        a.reason = near * 2 > size ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
+        a.reason = near * 2 > a.number ? ZT_ACCURACY_NARROW : ZT_ACCURACY_NEAR;
     } else if (a.wrong > SEEN_LAMP * e->lamp) {
         a.reason = ZT_ACCURACY_LAMP;
         a.other = e->lamp_light;
         a.seen = SEEN_LAMP * e->lamp;
         a.distance = e->lamp;
+    } else if (d->wrong * size * THIN > e->thin) {
+        a.reason = ZT_ACCURACY_THIN;
+        a.wrong = d->wrong * size;
+        a.distance = 2 * e->thin;
+        a.number = size;
     }
     return a;
 }
@@ -174,7 +182,7 @@ static double apart(const twin *p, const twin *q, double size) {
     if (p->flat) {
         double side = vec3_dot(p->normal, q->normal) < 0 ? -1 : 1;
         double turned = vec3_length(vec3_sub(p->normal, vec3_scale(q->normal, side)));
-        double reach = fmin(size, LARGEST);
+        double reach = fmin(size, single_digits.largest);
         return fabs(p->distance - side * q->distance) + turned * reach;
     }
     return fmax(vec3_max_abs(vec3_sub(a->low, b->low)),
@@ -212,20 +220,22 @@ bool zt_twins_within(const zt_twins *twins, double most) {
     return find_twins(&one, &other, &gap, twins, 0, most);
 }
 
-zt_accuracy zt_accuracy_judge(const zt_extents *extents, const zt_scene *scene,
-                              zt_pixel pixel) {
+zt_accuracy zt_accuracy_judge(const zt_extents *extents, const zt_scene *scene, zt_pixel pixel,
+                              zt_precision precision) {
+    const bool single = precision == ZT_PRECISION_SINGLE;
+    const digits *d = single ? &single_digits : &double_digits;
     bool mirrors = false;
     for (int32_t i = 0; i < scene->material_count; i++)
         mirrors |= scene->materials[i].reflectivity > 0;
-    if (mirrors && scene->reflection_depth > MIRRORS_MAX)
+    if (mirrors && scene->reflection_depth > d->mirrors)
         return (zt_accuracy){.reason = ZT_ACCURACY_MIRRORS, .object = -1, .other = -1};
     for (int32_t i = 0; i < extents->count; i++) {
-        zt_accuracy a = judge_one(&extents->all[i], pixel);
+        zt_accuracy a = judge_one(&extents->all[i], pixel, d);
         if (a.reason != ZT_ACCURACY_FINE) return a;
     }
     const zt_extent *one, *other;
     double gap;
-    if (!find_twins(&one, &other, &gap, extents->twins, SAME, WRONG))
+    if (!single || !find_twins(&one, &other, &gap, extents->twins, SAME, WRONG))
         return (zt_accuracy){.object = -1, .other = -1};
     double size = fmax(one->size, other->size);
     return (zt_accuracy){

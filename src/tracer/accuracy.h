@@ -1,11 +1,12 @@
-/* Whether single precision is enough for a frame: the roundings of each thing's arithmetic
- * against what can be seen of them. */
+/* Whether a precision is enough for a frame: the roundings of each thing's arithmetic against
+ * what can be seen of them. */
 #ifndef ZT_TRACER_ACCURACY_H
 #define ZT_TRACER_ACCURACY_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <zoetrope/precision.h>
 #include <zoetrope/status.h>
 
 #include "base/arena.h"
@@ -20,16 +21,17 @@ typedef enum zt_accuracy_reason {
     ZT_ACCURACY_TWIN,    /* another surface nearly lies on it */
     ZT_ACCURACY_RANGE,   /* its numbers are too large or too small */
     ZT_ACCURACY_MIRRORS, /* too many mirrors, one after the other */
-    ZT_ACCURACY_STRETCH  /* it is stretched too much */
+    ZT_ACCURACY_STRETCH, /* it is stretched too much */
+    ZT_ACCURACY_THIN     /* it is too thin, against its numbers */
 } zt_accuracy_reason;
 
-/* The first thing found that asks for double precision. */
+/* The first thing found that asks for more than a precision. */
 typedef struct zt_accuracy {
     zt_accuracy_reason reason;
     int32_t object, other; /* indices in the scene; other: light or object, or -1 */
-    double wrong;          /* how far off single precision may be, in the unit of space */
+    double wrong;          /* how far off the precision may be, in the unit of space */
     double seen;           /* what may be seen of that, likewise */
-    double distance;       /* to the camera, lamp or other surface, likewise */
+    double distance;       /* to the camera, lamp or other surface, or how thin, likewise */
     double number; /* the largest in its arithmetic; what is out of range; how many times
                       more one way than another it is stretched */
 } zt_accuracy;
@@ -40,6 +42,10 @@ typedef struct zt_accuracy {
 typedef struct zt_pixel {
     double width, angle, reach;
 } zt_pixel;
+
+/* By which share of its distance to the world's origin, or to that of a group around it,
+ * doubles round a thing's place. */
+#define ZT_GRAIN 0x1p-52
 
 /* One surface as it was made ready, in the space relative to the camera, in double precision.
  */
@@ -57,6 +63,8 @@ typedef struct zt_extent {
     bool perhaps;
     double size;    /* the largest number in its arithmetic */
     double least;   /* its smallest size that counts; infinite for planes */
+    double thin;    /* of a solid: its smallest measure across, halved; else infinite */
+    double grain;   /* by how much doubles round its place, wherever the camera is */
     double near;    /* how far away the surface is from the camera, at least about */
     double stretch; /* how many times more roundings than a sphere's it has */
     double lamp;    /* how far away the nearest lamp is; infinite where there is none */
@@ -80,6 +88,8 @@ typedef struct zt_extents {
     zt_twins *twins;
 } zt_extents;
 
-zt_accuracy zt_accuracy_judge(const zt_extents *extents, const zt_scene *scene, zt_pixel pixel);
+/* FINE where the precision, single or double, is enough. */
+zt_accuracy zt_accuracy_judge(const zt_extents *extents, const zt_scene *scene, zt_pixel pixel,
+                              zt_precision precision);
 
 #endif

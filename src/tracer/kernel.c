@@ -62,14 +62,18 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
     const zt_needs *needs = &ready->needs;
     if (precision != ZT_PRECISION_DOUBLE) {
         ZT_TRY(zt_prepare_single(&tracer, &extents, exposure, needs, all, meshes, arena));
-        ready->accuracy = zt_accuracy_judge(&extents, exposure->moments, pixel);
+        ready->accuracy =
+            zt_accuracy_judge(&extents, exposure->moments, pixel, ZT_PRECISION_SINGLE);
         if (precision == ZT_PRECISION_AUTO)
             ready->precision = ready->accuracy.reason == ZT_ACCURACY_FINE ? ZT_PRECISION_SINGLE
                                                                           : ZT_PRECISION_DOUBLE;
     }
     bool single = ready->precision == ZT_PRECISION_SINGLE;
-    if (!single)
+    if (!single) {
         ZT_TRY(zt_prepare_double(&tracer, &extents, exposure, needs, all, meshes, arena));
+        ready->beyond =
+            zt_accuracy_judge(&extents, exposure->moments, pixel, ZT_PRECISION_DOUBLE);
+    }
     ZT_TRY(single ? zt_prepare_search_single(tracer, meshes, arena)
                   : zt_prepare_search_double(tracer, meshes, arena));
     single ? zt_prepare_ready_single(ready, tracer) : zt_prepare_ready_double(ready, tracer);

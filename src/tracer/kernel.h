@@ -112,8 +112,9 @@ typedef struct zt_ready {
     const zt_tracer *tracer;
     const zt_kernel *kernel;
     zt_precision precision; /* not ZT_PRECISION_AUTO */
-    zt_accuracy
-        accuracy; /* what asks for double; FINE where nobody asked (double was wanted) */
+    /* What asks for double: FINE where nobody asked (double was wanted); and what asks for more
+     * than double, where that was chosen. */
+    zt_accuracy accuracy, beyond;
     zt_needs needs;
     bool moves;  /* something moves while the shutter is open, the camera left aside */
     bool random; /* there are lamps with a size: light is a mean over random numbers */

@@ -46,13 +46,30 @@ typedef struct made {
     int32_t count, placed_count, weave_count;
 } made;
 
-static void find_distances(zt_making *m, const zt_scene *scene, vec3 origin) {
+/* By how much doubles round places far from the world's origin, or from that of a group that
+ * is far around it. */
+static double grain_of(const zt_making *m, const xform *worlds) {
+    const zt_extent *e = m->extent;
+    const zt_object *objects = m->scene->objects, *o = m->object;
+    vec3 at = isfinite(e->low.x) ? vec3_scale(vec3_add(e->low, e->high), 0.5)
+                                 : vec3_scale(e->normal, e->distance);
+    double far = vec3_max_abs(m->origin);
+    for (; o->parent >= 0; o = &objects[o->parent]) {
+        vec3 shift = worlds[o - objects].shift;
+        far = fmax(far, vec3_max_abs(vec3_sub(at, shift)));
+        at = shift;
+    }
+    return ZT_GRAIN * far;
+}
+
+static void find_distances(zt_making *m) {
+    const zt_scene *scene = m->scene;
     zt_extent *e = m->extent;
     e->near = ZT_REAL_NAME(zt_shape_distance)(m, (vec3){0, 0, 0});
     e->lamp = INFINITY;
     for (int32_t i = 0; i < scene->light_count; i++) {
         if (scene->lights[i].kind == ZT_LIGHT_AMBIENT) continue;
-        vec3 lamp = vec3_sub(scene->lights[i].position, origin);
+        vec3 lamp = vec3_sub(scene->lights[i].position, m->origin);
         double distance =
             fmax(ZT_REAL_NAME(zt_shape_distance)(m, lamp), zt_light_reach(&scene->lights[i]));
         if (!(distance < e->lamp)) continue;
@@ -65,22 +82,28 @@ static void find_distances(zt_making *m, const zt_scene *scene, vec3 origin) {
 static bool make_at(zt_making *m, zt_placed_mesh *placed, const zt_course *c, int32_t i,
                     int32_t moment) {
     const zt_scene *scene = &c->exposure->moments[moment];
+    const xform *worlds = zt_course_worlds(c, moment);
+    m->scene = scene;
     m->object = &scene->objects[i];
-    m->world = &zt_course_worlds(c, moment)[i];
+    m->world = &worlds[i];
+    m->origin = c->exposure->moments->camera.position;
     *m->primitive = (zt_primitive){.object = i, .stretch = 1};
     *m->surface = (zt_surface){.pattern = -1};
-    *m->extent = (zt_extent){.object = i, .least = INFINITY, .stretch = 1};
+    *m->extent = (zt_extent){.object = i, .least = INFINITY, .thin = INFINITY, .stretch = 1};
     bool mesh = m->object->shape == ZT_SHAPE_MESH;
     if (mesh ? !ZT_REAL_NAME(zt_prepare_mesh)(m, placed, &scene->meshes[m->object->mesh])
              : !ZT_REAL_NAME(zt_prepare_shape)(m))
         return false;
-    find_distances(m, scene, c->exposure->moments->camera.position);
+    find_distances(m);
+    m->extent->grain = grain_of(m, worlds);
     return true;
 }
 
 static void add_extent(zt_extent *all, const zt_extent *e) {
     all->size = fmax(all->size, e->size);
     all->least = fmin(all->least, e->least);
+    all->thin = fmin(all->thin, e->thin);
+    all->grain = fmax(all->grain, e->grain);
     all->near = fmin(all->near, e->near);
     all->stretch = fmax(all->stretch, e->stretch);
     if (!(e->lamp < all->lamp)) return;

@@ -4,13 +4,12 @@
 
 #include <math.h>
 
+#include "tracer/wide.h"
+
 /* How far a transform may be from turning and scaling alike in all directions for a sphere to
  * stay a sphere: well above what products of a few rotations round to, and far below a pixel.
  */
 #define SIMILARITY_TOLERANCE 1e-12
-
-/* Up to this stretch double precision inverts a transform well enough for double precision. */
-#define PLAIN_STRETCH 100
 
 /* Triangles with a smaller sine of an angle are slivers. */
 #define SLIVER 0x1p-7
@@ -34,66 +33,52 @@ void ZT_REAL_NAME(zt_set_bounds)(zt_making *m, vec3 low, vec3 high) {
     m->primitive->box = (zt_box){to_real3(vec3_sub(low, grow)), to_real3(vec3_add(high, grow))};
 }
 
-/* Numbers of 113 bits, in software, where the compiler has them. */
-#if defined __SIZEOF_FLOAT128__
-__extension__ typedef __float128 wide;
-#else
-typedef long double wide;
-#endif
-
-typedef struct wide3 {
-    wide x, y, z;
-} wide3;
-
-static wide3 widen(vec3 v) { return (wide3){v.x, v.y, v.z}; }
-static wide3 wide_sub(wide3 a, wide3 b) { return (wide3){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static wide wide_dot(wide3 a, wide3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static wide3 wide_cross(wide3 a, wide3 b) {
-    return (wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-static wide wide_max_abs(wide3 a) {
-    wide x = a.x < 0 ? -a.x : a.x, y = a.y < 0 ? -a.y : a.y, z = a.z < 0 ? -a.z : a.z;
-    return x > y ? x > z ? x : z : y > z ? y : z;
-}
-static vec3 narrow(wide3 a, wide scale) {
-    return (vec3){(double)(a.x * scale), (double)(a.y * scale), (double)(a.z * scale)};
-}
-
-static double longest_of(const xform *m) {
-    return fmax(vec3_length(m->x), fmax(vec3_length(m->y), vec3_length(m->z)));
-}
-
-/* What undoes a transform, right to the last bits however askew its axes are: in double their
- * cross products cancel where one group stretches what another one turns. */
-static xform invert(const xform *m) {
-    xform back = xform_inverse(m);
-    if (longest_of(m) * longest_of(&back) < PLAIN_STRETCH) return back;
-    wide3 x = widen(m->x), y = widen(m->y), z = widen(m->z);
-    wide3 r[3] = {wide_cross(y, z), wide_cross(z, x), wide_cross(x, y)};
-    wide scale = 1 / wide_dot(r[0], x);
-    vec3 rows[3];
-    double shift[3];
-    for (int i = 0; i < 3; i++) {
-        rows[i] = narrow(r[i], scale);
-        shift[i] = (double)(-wide_dot(r[i], widen(m->shift)) * scale);
-    }
-    return (xform){{rows[0].x, rows[1].x, rows[2].x},
-                   {rows[0].y, rows[1].y, rows[2].y},
-                   {rows[0].z, rows[1].z, rows[2].z},
-                   {shift[0], shift[1], shift[2]}};
-}
-
 /* Each of the following makes one primitive and its surface; false where there is nothing to
  * hit. */
 
-static bool prepare_plane(zt_making *m) {
+/* A plane n . p = d by way of its groups, one after the other: the normal of any length. */
+typedef struct wide_plane {
+    wide3 n;
+    wide d;
+} wide_plane;
+
+static wide_plane plane_of_groups(const zt_making *m, vec3 normal, double distance) {
+    wide_plane p = {widen(normal), distance};
+    const zt_object *objects = m->scene->objects;
+    for (int32_t i = m->object->parent; i >= 0; i = objects[i].parent) {
+        const zt_placement *at = &objects[i].placement;
+        wide_axes place = wide_placed(at->rotation, at->scale), back = wide_cofactors(place);
+        wide determinant = wide_dot(back.x, place.x), side = determinant < 0 ? -1 : 1;
+        wide3 n = {side * p.n.x, side * p.n.y, side * p.n.z};
+        p.n = wide_combine(back, n);
+        p.d = wide_abs(determinant) * p.d + wide_dot(p.n, widen(at->position));
+    }
+    p.d -= wide_dot(p.n, widen(m->origin));
+    return p;
+}
+
+/* Of groups that stretch and turn by turns no digit can be spared: a plane is seen where its
+ * own space's numbers are the largest. */
+static double plane_at(vec3 *normal, const zt_making *m) {
     const zt_plane *plane = &m->object->plane;
-    vec3 given = vec3_normalize(plane->normal);
-    vec3 across = xform_normal(m->world, given), normal = vec3_normalize(across);
+    vec3 given = vec3_normalize(plane->normal), across = xform_normal(m->world, given);
+    *normal = vec3_normalize(across);
+    xform back = xform_inverse(m->world);
+    if (wide_is_askew(m->world, &back)) {
+        wide_plane p = plane_of_groups(m, given, plane->distance);
+        wide scale = 1 / wide_max_abs(p.n);
+        across = wide_narrow(p.n, scale);
+        *normal = vec3_normalize(across);
+        return (double)(p.d * scale) / vec3_length(across);
+    }
     /* Not by way of a point of it, which a group may take far along it. */
-    double distance =
-        plane->distance * fabs(xform_determinant(m->world)) / vec3_length(across) +
-        vec3_dot(normal, m->world->shift);
+    return plane->distance * fabs(xform_determinant(m->world)) / vec3_length(across) +
+           vec3_dot(*normal, m->world->shift);
+}
+
+static bool prepare_plane(zt_making *m) {
+    vec3 normal;
+    double distance = plane_at(&normal, m);
     if (vec3_max_abs(normal) == 0 || !finite3(normal) || !isfinite(distance)) return false;
     zt_primitive *p = m->primitive;
     p->kind = ZT_PRIMITIVE_PLANE;
@@ -120,7 +105,7 @@ static vec3 triangle_normal(const vec3 *v) {
     wide3 corner = widen(v[0]);
     wide3 across = wide_cross(wide_sub(widen(v[1]), corner), wide_sub(widen(v[2]), corner));
     wide longest = wide_max_abs(across);
-    return longest > 0 ? vec3_normalize(narrow(across, 1 / longest)) : (vec3){0, 0, 0};
+    return longest > 0 ? vec3_normalize(wide_narrow(across, 1 / longest)) : (vec3){0, 0, 0};
 }
 
 static bool prepare_triangle(zt_making *m) {
@@ -149,7 +134,7 @@ static bool prepare_triangle(zt_making *m) {
  * to `high` along the axis. */
 static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place, double round,
                        double square, double low, double high, double ball) {
-    xform back = invert(place);
+    xform back = wide_inverse(place);
     if (!finite3(place->shift)) return false;
     vec3 rows[3], reach, middle = xform_point(place, (vec3){0, 0, (low + high) / 2});
     double half = (high - low) / 2, longest = 0, longest_back = 0;
@@ -177,7 +162,7 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     m->extent->ways[1] = place->y;
     m->extent->ways[2] = vec3_scale(place->z, half);
     m->extent->faces = square > 0 ? 7 : round > 0 && half > 0 ? 4 : 0;
-    m->extent->least =
+    m->extent->least = m->extent->thin =
         fmin(vec3_length(place->x), fmin(vec3_length(place->y), vec3_length(place->z)));
     return true;
 }
@@ -268,7 +253,9 @@ static bool prepare_torus(zt_making *m) {
     double tube = torus->tube_radius / torus->radius;
     if (!(tube > 0) || !isfinite(tube)) return false;
     m->primitive->solid.a = (real)fmin(tube, 1);
-    return make_solid(m, ZT_PRIMITIVE_TORUS, &place, 1, 0, 0, 0, fmin(tube, 1));
+    bool there = make_solid(m, ZT_PRIMITIVE_TORUS, &place, 1, 0, 0, 0, fmin(tube, 1));
+    m->extent->thin *= fmin(tube, 1);
+    return there;
 }
 
 /* ---- how far away it is ---------------------------------------------------------------------
@@ -362,14 +349,16 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     vec3 half = vec3_scale(vec3_sub(mesh->high, mesh->low), 0.5);
     vec3 middle = xform_point(&place, vec3_add(mesh->low, half));
     place.shift = xform_point(&place, mesh->origin);
-    xform back = invert(&place);
-    double reach = 0;
+    xform back = wide_inverse(&place);
+    double reach = 0, across = 0, across_back = 0;
     double reaches[3];
     for (int i = 0; i < 3; i++) {
         placed->rows[i] = zt_xform_row(&back, i);
         vec3 r = zt_xform_row(&place, i);
         reaches[i] = fabs(r.x) * half.x + fabs(r.y) * half.y + fabs(r.z) * half.z;
         reach = fmax(reach, 3 * vec3_max_abs(placed->rows[i]));
+        across = fmax(across, vec3_length(r));
+        across_back = fmax(across_back, vec3_length(placed->rows[i]));
     }
     vec3 around = {reaches[0], reaches[1], reaches[2]};
     placed->at = back.shift;
@@ -380,6 +369,7 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     m->primitive->kind = ZT_PRIMITIVE_MESH;
     m->surface->closed = -1;
     ZT_REAL_NAME(zt_set_bounds)(m, vec3_sub(middle, around), vec3_add(middle, around));
+    m->extent->stretch = across * across_back;
     m->extent->middle = middle;
     m->extent->ways[0] = vec3_scale(place.x, half.x);
     m->extent->ways[1] = vec3_scale(place.y, half.y);

@@ -20,8 +20,10 @@ typedef struct zt_making {
     zt_primitive *primitive;
     zt_surface *surface;
     zt_extent *extent;
+    const zt_scene *scene;
     const zt_object *object;
     const xform *world;
+    vec3 origin; /* of space */
 } zt_making;
 
 /* Each makes the primitive, the form of its surface and its extent; false where there is
