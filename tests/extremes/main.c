@@ -1,8 +1,8 @@
 /* Holds the tracer against the reference where numbers are extreme, and prints how exact and
  * how fast it was:
- *     extremes [--case NAME] [--scenes N] [--rays N] [--csv FILE] [--verbose] [--digest]
- * --scenes: how many scenes of each case instead of the few of the short run; --rays: how many
- * at edges and corners of closed meshes. --digest prints a checksum of all answers instead, for
+ *     extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] [--verbose] [--digest]
+ * --first: the number of the first scene of each case; --scenes: how many instead of the few of
+ * the short run; --rays: how many at edges and corners of closed meshes. --digest prints a checksum of all answers instead, for
  * comparisons between kernels. Exits with 1 where what must hold does not. */
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 
 typedef struct options {
     const char *only, *csv;
-    int scenes;
+    int first, scenes;
     int64_t rays;
     bool verbose, digest;
 } options;
@@ -29,6 +29,8 @@ static bool read_options(options *o, int count, char **words) {
             o->only = words[++i];
         else if (strcmp(words[i], "--csv") == 0 && next)
             o->csv = words[++i];
+        else if (strcmp(words[i], "--first") == 0 && next)
+            o->first = atoi(words[++i]);
         else if (strcmp(words[i], "--scenes") == 0 && next)
             o->scenes = atoi(words[++i]);
         else if (strcmp(words[i], "--rays") == 0 && next)
@@ -50,7 +52,7 @@ static bool run(int *failures, FILE *csv, const extreme_case *c, const options *
     else if (c == &pictures_case)
         ok = run_pictures(&result, o->scenes > 0 ? o->scenes : 1, how);
     else
-        ok = run_case(&result, c, 0, o->scenes > 0 ? o->scenes : c->scenes, how);
+        ok = run_case(&result, c, o->first, o->scenes > 0 ? o->scenes : c->scenes, how);
     if (!ok) return false;
     if (!o->digest)
         *failures += table_case(csv, c, &result);
@@ -63,8 +65,8 @@ static bool run(int *failures, FILE *csv, const extreme_case *c, const options *
 int main(int count, char **words) {
     options o = {.rays = 200000};
     if (!read_options(&o, count, words)) {
-        fputs("usage: extremes [--case NAME] [--scenes N] [--rays N] [--csv FILE] [--verbose] "
-              "[--digest]\n",
+        fputs("usage: extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] "
+              "[--verbose] [--digest]\n",
               stderr);
         return 2;
     }

@@ -123,8 +123,8 @@ bool ref_solid_first(real *t, const ref_primitive *p, const ref_ray *ray, real f
     span in = convex(p, real3_along(o, shift, d), d);
     if (!(in.from < in.to)) return false;
     in = (span){in.from + shift, in.to + shift};
-    if (leaves) { /* outward: never again; inward: at the far end */
-        bool inward = in.to > -in.from;
+    if (leaves) { /* outward: never again; inward, as the face says: at the far end */
+        bool inward = real3_dot(ref_nearest_face(p, -1, ray->o).normal, ray->d) < 0;
         *t = in.to;
         return inward && in.to > from && in.to < to;
     }
