@@ -257,6 +257,53 @@ static void random_numbers_are_the_frames(void **state) {
         }
 }
 
+/* A wall of faint checks, dots before it that are smaller than pixels, and a lid on some:
+ * at the edges of tiles that are not touched, it depends on the tile beside which pixels go on.
+ */
+static void show_dots(uint64_t seed, zt_sampling sampling, int64_t *copied) {
+    static test_scene s;
+    uint64_t random = seed;
+    reel r;
+    scene_begin(&s);
+    s.scene.camera.lens = ZT_LENS_ORTHOGRAPHIC;
+    s.scene.camera.height = REEL_HEIGHT; /* a pixel is one wide */
+    int32_t wall = scene_material(&s, (vec3){0.5, 0.5, 0.5}, 0),
+            dark = scene_material(&s, red, 0);
+    s.materials[wall].pattern = sampling.edges ? ZT_PATTERN_NONE : ZT_PATTERN_CHECKER;
+    s.materials[wall].other_color = (vec3){0.53, 0.53, 0.53};
+    s.materials[wall].pattern_size = 0.31;
+    scene_plane(&s, (vec3){0, 0, 1}, -20, wall);
+    scene_ambient(&s, white, 0.5);
+    scene_point_light(&s, (vec3){0, 0, 300}, 5e4)->shadows = sampling.edges;
+    zt_block *lid = &scene_object(&s, ZT_SHAPE_BOX, dark)->box;
+    for (int i = 0; i < 300; i++) {
+        vec3 at = {test_between(&random, -40, 40), test_between(&random, -32, 32),
+                   sampling.edges ? 5 : -15};
+        scene_sphere(&s, at, test_between(&random, 0.1, 0.6), dark);
+    }
+    reel_open(&r, NULL, 0);
+    r.sampling = sampling;
+    for (int i = 0; i < 12; i++) {
+        double right = -40.2 + 16 * floor(test_between(&random, 1, 5)); /* within a tile */
+        *lid = (zt_block){
+            {right - 4, test_between(&random, -20, 20), -19.9}, {8, 24, 0.1}, {1, 0, 0, 0}};
+        reel_show(&r, &s.scene);
+    }
+    *copied += r.copied;
+    reel_close(&r);
+}
+
+static void decisions_go_beyond_tiles(void **state) {
+    (void)state;
+    int64_t copied = 0;
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        show_dots(seed, (zt_sampling){.min = 4, .max = 64, .error = 0.012}, &copied);
+        show_dots(seed, (zt_sampling){.min = 1, .max = 16, .error = 0.02, .edges = true},
+                  &copied);
+    }
+    assert_true(copied > 4 * 2 * 12 * REEL_TILES / 8);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_holds_still_is_copied),
@@ -269,6 +316,7 @@ int main(void) {
         cmocka_unit_test(ties_are_settled_as_before),
         cmocka_unit_test(views_and_what_is_left_out),
         cmocka_unit_test(random_numbers_are_the_frames),
+        cmocka_unit_test(decisions_go_beyond_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,6 +15,27 @@
 
 enum { SCENES = 300, FRAMES = 5, SHOWN = 9 };
 
+/* Which pixels take how many samples. */
+typedef enum kind { EVEN, SIGNED, ADAPTIVE, EDGES, KINDS } kind;
+static const char *const kind_names[KINDS] = {"even", "signed", "adaptive", "edges"};
+
+/* By any filter. */
+static zt_sampling draw_sampling(draw *d, kind kind) {
+    static const int samples[] = {1, 1, 1, 4, 16}, least[] = {1, 2, 4, 7};
+    zt_sampling s = {.filter = draw_below(d, 3) ? ZT_FILTER_BOX
+                                                : (zt_filter)draw_below(d, ZT_FILTER_COUNT),
+                     .seed_fixed = draw_below(d, 4) == 0};
+    if (kind == SIGNED) s.filter = ZT_FILTER_MITCHELL;
+    s.min = s.max = samples[draw_below(d, 5)];
+    if (kind < ADAPTIVE) return s;
+    s.edges = kind == EDGES;
+    s.min = s.edges ? 1 : least[draw_below(d, 4)];
+    s.max = 8 << draw_below(d, 2);
+    s.error = draw_below(d, 2) ? 0.05 : 0.01;
+    if (draw_below(d, 8) == 0) s.mean_max = 3;
+    return s;
+}
+
 static void show_scene(reel *r, uint64_t key, const zt_mesh *meshes) {
     static test_scene base, moments[2];
     static const double times[] = {0, 1};

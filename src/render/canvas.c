@@ -59,24 +59,28 @@ void zt_canvas_close(zt_canvas *canvas) {
     *canvas = (zt_canvas){0};
 }
 
-void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row) {
+static void make_slot(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row,
+                      bool hidden) {
     canvas->error[zt_canvas_pixel(canvas, column, row)] = NOT_YET;
     if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
-    canvas->slots[slot] = (zt_slot){.column = (uint16_t)column, .row = (uint16_t)row};
+    canvas->slots[slot] =
+        (zt_slot){.column = (uint16_t)column, .row = (uint16_t)row, .hidden = hidden};
+}
+
+void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row,
+                      bool hidden) {
+    make_slot(canvas, slot, column, row, hidden);
     canvas->waiting[slot] = (zt_waiting){slot, 0};
 }
 
-void zt_canvas_added_all(zt_canvas *canvas) {
-    canvas->slot_count = canvas->waiting_count = canvas->width * canvas->height;
+void zt_canvas_added(zt_canvas *canvas, int32_t count) {
+    canvas->slot_count = canvas->waiting_count = count;
 }
 
 void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row) {
-    float *error = &canvas->error[zt_canvas_pixel(canvas, column, row)];
-    if (*error != NO_ESTIMATE) return;
-    *error = NOT_YET;
+    if (canvas->error[zt_canvas_pixel(canvas, column, row)] != NO_ESTIMATE) return;
     int32_t slot = canvas->slot_count++;
-    if (canvas->negative) canvas->negative[slot] = (zt_canvas_sum){0};
-    canvas->slots[slot] = (zt_slot){.column = (uint16_t)column, .row = (uint16_t)row};
+    make_slot(canvas, slot, column, row, false);
     canvas->waiting[canvas->waiting_count++] = (zt_waiting){slot, 0};
 }
 

@@ -77,10 +77,11 @@ static inline size_t zt_canvas_pixel(const zt_canvas *canvas, int32_t column, in
 /* A pixel gets a slot, and waits; nothing happens where it has one. */
 void zt_canvas_add(zt_canvas *canvas, int32_t column, int32_t row);
 
-/* A pixel gets slot number `slot`, and waits, where all pixels do so: each exactly once, from
- * any thread. The canvas must be empty; its slots count once zt_canvas_added_all() says so. */
-void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row);
-void zt_canvas_added_all(zt_canvas *canvas);
+/* A pixel gets slot number `slot`, and waits; from any thread, each number and pixel once. The
+ * canvas must be empty; slots 0 .. count - 1 count once zt_canvas_added() says so. */
+void zt_canvas_add_as(zt_canvas *canvas, int32_t slot, int32_t column, int32_t row,
+                      bool hidden);
+void zt_canvas_added(zt_canvas *canvas, int32_t count);
 
 /* How many of the samples that a slot has taken were not finite. */
 static inline int32_t zt_slot_left_out(const zt_canvas *canvas, int32_t slot) {

@@ -145,45 +145,54 @@ zt_status zt_refine(zt_frame *f) {
     return ZT_OK;
 }
 
-/* The pixels of a tile get slots one after the other, and so do the tiles. */
-static void begin_task(void *user, int task, int worker) {
-    (void)worker;
-    zt_frame *f = user;
-    zt_canvas *canvas = &f->work->canvas;
-    int x = task % f->tile_columns * TILE_SIDE, y = task / f->tile_columns * TILE_SIDE;
-    int width = min_int(TILE_SIDE, canvas->width - x);
-    int height = min_int(TILE_SIDE, canvas->height - y);
-    int32_t slot = y * canvas->width + x * height;
-    for (int i = 0; i < ZT_BATCH; i++)
-        if (f->work->column[i] < width && f->work->row[i] < height)
-            zt_canvas_add_as(canvas, slot++, x + f->work->column[i], y + f->work->row[i]);
-}
-
 /* Whatever a pixel's samples come to, whether one beside it goes on may depend on it; then what
  * that one's samples come to; and so on, by a pixel each round but for the last. So where tiles
  * are copied, pixels are decided about anew as far as that from those that are rendered; and
- * for these, as far from them again. */
-static void add_near(zt_frame *f, int tile, int reach) {
+ * for these, as far from them again, which are hidden. */
+typedef struct beginning {
+    zt_frame *frame;
+    int reach;       /* pixels */
+    int32_t *firsts; /* how many slots each tile has, and then its first one */
+    bool adds;
+} beginning;
+
+/* Counts or adds the slots of a tile. */
+static void begin_task(void *user, int tile, int worker) {
+    (void)worker;
+    const beginning *b = user;
+    zt_frame *f = b->frame;
     zt_canvas *canvas = &f->work->canvas;
-    int left = tile % f->tile_columns * TILE_SIDE, top = tile / f->tile_columns * TILE_SIDE;
-    if (zt_reuse_distance(f, left, top, 2 * reach + TILE_SIDE) > 2 * reach + TILE_SIDE) return;
-    bool changes = false;
-    for (int i = 0; i < ZT_BATCH; i++) {
+    const int left = tile % f->tile_columns * TILE_SIDE,
+              top = tile / f->tile_columns * TILE_SIDE;
+    int32_t slot = b->adds ? b->firsts[tile] : 0;
+    bool shows = false,
+         far = f->copies && zt_reuse_distance(f, left, top, 2 * b->reach + TILE_SIDE) >
+                                2 * b->reach + TILE_SIDE;
+    for (int i = 0; i < ZT_BATCH && !far; i++) {
         int x = left + f->work->column[i], y = top + f->work->row[i];
         if (x >= canvas->width || y >= canvas->height) continue;
-        int distance = zt_reuse_distance(f, x, y, 2 * reach);
-        if (distance > 2 * reach) continue;
-        zt_canvas_add(canvas, x, y);
-        canvas->slots[canvas->slot_count - 1].hidden = distance > reach;
-        changes |= distance <= reach;
+        int distance = f->copies ? zt_reuse_distance(f, x, y, 2 * b->reach) : 0;
+        if (distance > 2 * b->reach) continue;
+        if (b->adds) zt_canvas_add_as(canvas, slot, x, y, distance > b->reach);
+        shows |= distance <= b->reach;
+        slot++;
     }
-    if (changes) zt_reuse_stamp(f, tile);
+    if (!b->adds) b->firsts[tile] = slot;
+    if (shows && b->adds && f->keeps) zt_reuse_stamp(f, tile);
 }
 
 void zt_refine_begin(zt_frame *f) {
-    for (int tile = 0; f->copies && tile < f->tile_count; tile++)
-        add_near(f, tile, zt_round_count(f) - 1);
-    if (f->copies) return;
-    run(f->pool, f->tile_count, begin_task, f);
-    zt_canvas_added_all(&f->work->canvas);
+    zt_canvas *canvas = &f->work->canvas;
+    /* Nobody is in the round yet, and there are fewer tiles than pixels. */
+    beginning b = {.frame = f, .reach = zt_round_count(f) - 1, .firsts = canvas->round};
+    int32_t count = 0;
+    run(f->pool, f->tile_count, begin_task, &b);
+    for (int tile = 0; tile < f->tile_count; tile++) {
+        int32_t own = b.firsts[tile];
+        b.firsts[tile] = count;
+        count += own;
+    }
+    b.adds = true;
+    run(f->pool, f->tile_count, begin_task, &b);
+    zt_canvas_added(canvas, count);
 }

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 #if defined __SSE__
 #include <xmmintrin.h>
 #endif
@@ -281,6 +282,7 @@ static int gap(int at, int first) {
 int zt_reuse_distance(const zt_frame *f, int x, int y, int most) {
     const uint8_t *from = f->job->reuse->from;
     int nearest = most + 1, rows = f->tile_count / f->tile_columns;
+    if (from[y / TILE_SIDE * f->tile_columns + x / TILE_SIDE] == ZT_TILE_RENDERED) return 0;
     for (int row = max_int((y - most) / TILE_SIDE, 0);
          row <= min_int((y + most) / TILE_SIDE, rows - 1); row++)
         for (int column = max_int((x - most) / TILE_SIDE, 0);
@@ -329,8 +331,7 @@ void zt_reuse_note(zt_frame *f, const zt_footprint *footprint, int column, int r
     int part = row / half % 2 * 2 + column / half % 2;
     atomic_flag *lock = &r->locks[tile % ZT_REUSE_LOCKS];
     if (footprint->doubtful) atomic_store_explicit(&f->doubtful, true, memory_order_relaxed);
-    while (atomic_flag_test_and_set_explicit(lock, memory_order_acquire)) {
-    }
+    while (atomic_flag_test_and_set_explicit(lock, memory_order_acquire)) thrd_yield();
     join(&r->last.footprints[tile * ZT_REUSE_PARTS + part], footprint);
     atomic_flag_clear_explicit(lock, memory_order_release);
 }

@@ -99,7 +99,7 @@ bool zt_rounds_recall(zt_canvas *canvas, int32_t slot, const zt_rounds *r) {
     s->strange = round->strange;
     s->known = next;
     canvas->error[zt_canvas_pixel(canvas, s->column, s->row)] = round->error;
-    if (r->negative) canvas->negative[slot] = r->negative[next];
+    if (canvas->negative) canvas->negative[slot] = r->negative[next];
     return true;
 }
 
@@ -113,7 +113,7 @@ static void keep(zt_rounds *r, zt_canvas *canvas, int32_t slot, uint32_t number)
         (zt_round){.sum = s->sum,
                    .error = canvas->error[zt_canvas_pixel(canvas, s->column, s->row)],
                    .strange = s->strange};
-    if (r->negative) r->negative[number] = canvas->negative[slot];
+    if (canvas->negative) r->negative[number] = canvas->negative[slot];
     *next_of(r, s) = number;
     s->known = number;
 }
