@@ -195,4 +195,7 @@ void zt_refine_begin(zt_frame *f) {
     b.adds = true;
     run(f->pool, f->tile_count, begin_task, &b);
     zt_canvas_added(canvas, count);
+    /* The others would have taken a round, at least. */
+    f->work->threads[0].count.rays.primary_avoided +=
+        (int64_t)((pixels_of(canvas) - count) * zt_round_plan(f, 0).more);
 }

@@ -208,6 +208,9 @@ static bool render_tile(zt_frame *f, int index, int worker) {
     zt_render_thread *own = &f->work->threads[worker];
     if (f->copies && f->job->reuse->from[index] != ZT_TILE_RENDERED) {
         zt_reuse_copy(f, index, x, y, area.width, area.height);
+        if (f->even || f->at_edges)
+            own->count.rays.primary_avoided +=
+                (int64_t)area.width * area.height * (f->even ? f->job->sampling.max : 1);
         return true;
     }
     if (f->keeps)

@@ -229,7 +229,8 @@ static void sample_group(const zt_round_job *j, zt_render_thread *own, const int
 }
 
 /* Lists the slots whose round is not known from the frame before. */
-static int32_t list_unknown(int32_t *list, const zt_round_job *j, int32_t begin, int32_t end) {
+static int32_t list_unknown(int32_t *list, const zt_round_job *j, zt_render_thread *own,
+                            int32_t begin, int32_t end) {
     zt_canvas *canvas = &j->frame->work->canvas;
     const zt_rounds *rounds = j->frame->rounds;
     int32_t count = 0;
@@ -241,6 +242,7 @@ static int32_t list_unknown(int32_t *list, const zt_round_job *j, int32_t begin,
         else
             count++;
     }
+    own->count.rays.primary_avoided += (int64_t)(end - begin - count) * j->more;
     return count;
 }
 
@@ -262,7 +264,7 @@ void zt_round_task(void *user, int task, int worker) {
     int32_t begin = task * j->task_slots;
     int32_t end = min_int(begin + j->task_slots, canvas->round_count);
     int32_t list[TASK_RAYS];
-    int32_t count = list_unknown(list, j, begin, end);
+    int32_t count = list_unknown(list, j, own, begin, end);
     for (int32_t i = 0, now; i < count; i += now) {
         if (zt_frame_stopped(j->frame)) return;
         now = group_size(j, list + i, min_int(j->group, count - i));

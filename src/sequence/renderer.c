@@ -180,9 +180,6 @@ static void add_cost(zt_renderer *r) {
     s->frames++;
     s->primary.traced += rays->primary;
     s->primary.avoided += rays->primary_avoided;
-    if (cost->tiles_copied > 0)
-        s->primary.avoided +=
-            (int64_t)r->format.width * r->format.height * r->sampling.max - rays->primary;
     s->shadow.traced += rays->shadow;
     s->shadow.avoided += rays->shadow_avoided;
     s->mirror.traced += rays->mirror;
