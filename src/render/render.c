@@ -200,6 +200,54 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
  * batch stay close together. Blocks of a tile are squares of these many pixels. */
 static int block_size(int samples) { return samples >= 16 ? 16 : samples >= 4 ? 64 : ZT_BATCH; }
 
+/* The pixels from `first` to `end` of a tile, and what their rays touch. */
+static bool render_blocks(zt_frame *f, zt_render_thread *own, tile area, int index, int first,
+                          int end, int most) {
+    bool done = true;
+    for (; first < end && done; first += most) {
+        int64_t left_out = own->count.left_out;
+        if (f->keeps)
+            zt_reuse_watch(&own->rays, zt_reuse_footprint(f->job->reuse, index, first), f);
+        done = render_block(f, own, area, first, most);
+        /* What is left out is told in each frame. */
+        if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
+    }
+    own->rays.footprint = NULL;
+    return done;
+}
+
+/* A tile of which parts may be copied: sets `rendered` where that is all it takes. */
+static bool render_parts(bool *rendered, zt_frame *f, zt_render_thread *own, tile area,
+                         int index) {
+    zt_reuse *r = f->job->reuse;
+    zt_footprint *footprints = zt_reuse_footprint(r, index, 0);
+    int size = block_size(f->job->sampling.max), most = min_int(size, ZT_REUSE_PIXELS);
+    const int64_t left_out = own->count.left_out;
+    int64_t avoided = 0;
+    bool doubtful = false;
+    zt_reuse_copy_parts(f, index, area.x, area.y);
+    for (int part = 0; part < ZT_REUSE_PARTS; part++) {
+        if (!(r->still[index] >> part & 1)) {
+            footprints[part] = (zt_footprint){0};
+            int first = part * ZT_REUSE_PIXELS;
+            if (!render_blocks(f, own, area, index, first, first + ZT_REUSE_PIXELS, most))
+                return false;
+            zt_reuse_keep(f, index, area.x + part % 2 * ZT_REUSE_SIDE,
+                          area.y + part / 2 * ZT_REUSE_SIDE, ZT_REUSE_SIDE, ZT_REUSE_SIDE);
+        } else {
+            avoided += (int64_t)ZT_REUSE_PIXELS * f->job->sampling.max;
+        }
+        doubtful |= footprints[part].doubtful;
+    }
+    /* Then it may make a difference which rays share a batch. */
+    *rendered = size == most || !doubtful;
+    if (*rendered)
+        own->count.rays.primary_avoided += avoided;
+    else
+        own->count.left_out = left_out;
+    return true;
+}
+
 static bool render_tile(zt_frame *f, int index, int worker) {
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
@@ -213,6 +261,10 @@ static bool render_tile(zt_frame *f, int index, int worker) {
                 (int64_t)area.width * area.height * (f->even ? f->job->sampling.max : 1);
         return true;
     }
+    bool rendered = false;
+    if (f->copies && f->even && area.width == TILE_SIDE && area.height == TILE_SIDE &&
+        (!render_parts(&rendered, f, own, area, index) || rendered))
+        return rendered;
     if (f->keeps)
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
                ZT_REUSE_PARTS * sizeof(zt_footprint));
@@ -221,16 +273,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         zt_reuse_stamp(f, index);
         return true;
     }
-    bool done = true;
-    for (int first = 0; first < ZT_BATCH && done; first += most) {
-        int64_t left_out = own->count.left_out;
-        if (f->keeps)
-            zt_reuse_watch(&own->rays, zt_reuse_footprint(f->job->reuse, index, first), f);
-        done = render_block(f, own, area, first, most);
-        /* What is left out is told in each frame. */
-        if (f->keeps && own->count.left_out > left_out) own->rays.footprint->restless = true;
-    }
-    own->rays.footprint = NULL;
+    bool done = render_blocks(f, own, area, index, 0, ZT_BATCH, most);
     if (f->keeps && done) zt_reuse_keep(f, index, x, y, area.width, area.height);
     return done;
 }

@@ -51,6 +51,7 @@ void zt_reuse_close(zt_reuse **slot) {
     zt_picture_close(&r->last);
     zt_arena_free(&r->spare);
     free(r->from);
+    free(r->still);
     free(r->stamps);
     free(r);
     *slot = NULL;
@@ -76,7 +77,7 @@ const char *zt_reuse_hindrance(const zt_render_job *job) {
  */
 
 typedef struct asking {
-    uint8_t *from;
+    uint8_t *from, *still;
     const zt_picture *picture;
     const zt_differences *differences;
     int tile_count;
@@ -91,10 +92,13 @@ static void ask_task(void *user, int task, int worker) {
     int end = min_int((task + 1) * TILES, a->tile_count);
     for (int tile = task * TILES; tile < end; tile++) {
         const zt_footprint *parts = &a->picture->footprints[tile * ZT_REUSE_PARTS];
-        bool touched = a->from[tile] != ZT_TILE_RENDERED;
-        for (int i = 0; i < ZT_REUSE_PARTS && !touched; i++)
-            touched = zt_footprint_touched(&parts[i], a->differences);
-        if (!touched) a->from[tile] = (uint8_t)a->source;
+        if (a->from[tile] != ZT_TILE_RENDERED) continue;
+        unsigned still = 0;
+        for (int i = 0; i < ZT_REUSE_PARTS; i++)
+            still |= (unsigned)!zt_footprint_touched(&parts[i], a->differences) << i;
+        if (still == ZT_REUSE_ALL) a->from[tile] = (uint8_t)a->source;
+        bool by_parts = a->source == ZT_TILE_LAST && parts[ZT_REUSE_PARTS - 1].steps->there;
+        if (by_parts) a->still[tile] = (uint8_t)still;
     }
 }
 
@@ -122,7 +126,8 @@ static zt_status ask(zt_frame *f, const zt_picture *picture, zt_tile_source sour
         if (differences.shifted || !same_lamps(&picture->outline, now)) return ZT_OK;
         differences.drawn_lamps |= differences.dimmed_lamps;
     }
-    asking a = {f->job->reuse->from, picture, &differences, f->tile_count, source};
+    zt_reuse *r = f->job->reuse;
+    asking a = {r->from, r->still, picture, &differences, f->tile_count, source};
     zt_pool_run(f->pool, (f->tile_count + TILES - 1) / TILES, ask_task, &a);
     f->copies = true;
     return ZT_OK;
@@ -132,13 +137,16 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
     zt_picture *last = &r->last;
     if (last->width != f->image->width || last->height != f->image->height) {
         uint8_t *from = realloc(r->from, (size_t)f->tile_count);
+        uint8_t *still = realloc(r->still, (size_t)f->tile_count);
         uint64_t *stamps = realloc(r->stamps, (size_t)f->tile_count * sizeof *stamps);
         if (from) r->from = from;
+        if (still) r->still = still;
         if (stamps) r->stamps = stamps;
-        if (!from || !stamps) return ZT_EMEMORY;
+        if (!from || !still || !stamps) return ZT_EMEMORY;
     }
     ZT_TRY(zt_picture_open(last, f->image->width, f->image->height));
     memset(r->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
+    memset(r->still, 0, (size_t)f->tile_count);
     return ZT_OK;
 }
 
@@ -371,6 +379,18 @@ void zt_reuse_copy(zt_frame *f, int tile, int left, int top, int width, int heig
         if (from != last)
             memcpy(last->pixels + at, from->pixels + at, 4 * (size_t)width * sizeof(float));
     }
+}
+
+void zt_reuse_copy_parts(zt_frame *f, int tile, int left, int top) {
+    const zt_reuse *r = f->job->reuse;
+    const uint64_t *stamps = f->image->stamps;
+    if (stamps && stamps[tile] == r->stamps[tile]) return;
+    for (int y = 0; y < TILE_SIDE; y++)
+        for (int half = 0; half < 2; half++) {
+            if (!(r->still[tile] >> (y / ZT_REUSE_SIDE * 2 + half) & 1)) continue;
+            size_t at = place_of(f, left + half * ZT_REUSE_SIDE, top + y);
+            stream(f->image->pixels + at, r->last.pixels + at, ZT_REUSE_SIDE);
+        }
 }
 
 void zt_reuse_stamp(zt_frame *f, int tile) {

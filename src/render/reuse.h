@@ -33,6 +33,9 @@
  * itself. That makes no difference but where what is met may depend on the order in which
  * things are asked: where that occurs (a footprint is doubtful), the whole frame is rendered.
  *
+ * A tile that was touched is rendered by quarters, so that of the next frame's only those are
+ * that are touched; where it is doubtful, as a whole.
+ *
  * What it costs. Taking footprints down takes a hundredth of a frame or two, asking them less;
  * a first frame, and one after the camera moved, take down nothing. Where hardly a tile is
  * copied, it is left for twice as many frames each time. */
@@ -45,8 +48,15 @@
 #include "render/work.h"
 #include "tracer/footprint.h"
 
-/* What of a tile has a footprint of its own: a quarter, or all of it. */
-enum { ZT_REUSE_PARTS = 4, ZT_REUSE_LOCKS = 64 };
+/* What of a tile has a footprint of its own: a quarter, or all of it, which has the first
+ * quarter's. */
+enum {
+    ZT_REUSE_PARTS = 4,
+    ZT_REUSE_ALL = (1 << ZT_REUSE_PARTS) - 1,
+    ZT_REUSE_SIDE = TILE_SIDE / 2,
+    ZT_REUSE_PIXELS = ZT_BATCH / ZT_REUSE_PARTS,
+    ZT_REUSE_LOCKS = 64
+};
 
 /* A frame as it was rendered, with what its rays touched: all that tiles are copied from. */
 typedef struct zt_picture {
@@ -80,11 +90,12 @@ struct zt_reuse {
     zt_picture last;        /* the frame that was rendered last */
     const zt_picture *kept; /* may be like the next one as well; NULL: none */
     uint8_t *from;          /* a zt_tile_source for each tile */
-    uint64_t *stamps;       /* of the tiles of `last` (image/stamps.h): the frame each was new
-                               in, where frames are counted from 1 */
-    uint64_t serial;        /* of the frame */
-    zt_arena spare;         /* the next outline's */
-    int fruitless, rest;    /* how often too little came of it; how many frames it rests yet */
+    uint8_t *still;      /* of tiles that are rendered: a bit for each part that need not be */
+    uint64_t *stamps;    /* of the tiles of `last` (image/stamps.h): the frame each was new
+                            in, where frames are counted from 1 */
+    uint64_t serial;     /* of the frame */
+    zt_arena spare;      /* the next outline's */
+    int fruitless, rest; /* how often too little came of it; how many frames it rests yet */
     atomic_flag locks[ZT_REUSE_LOCKS]; /* of the footprints of each so manieth tile */
 };
 
@@ -103,6 +114,10 @@ void zt_reuse_end(zt_frame *frame, bool done);
 void zt_reuse_copy(zt_frame *frame, int tile, int left, int top, int width, int height);
 void zt_reuse_keep(zt_frame *frame, int tile, int left, int top, int width, int height);
 
+/* The same of the parts of a tile that need not be rendered, into the image. To be called
+ * before those that are rendered are kept. */
+void zt_reuse_copy_parts(zt_frame *frame, int tile, int left, int top);
+
 /* A tile is new in the image, and in what is kept. */
 void zt_reuse_stamp(zt_frame *frame, int tile);
 
@@ -117,7 +132,7 @@ void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *fram
 void zt_reuse_note(zt_frame *frame, const zt_footprint *footprint, int column, int row);
 
 static inline zt_footprint *zt_reuse_footprint(const zt_reuse *r, int tile, int first) {
-    return &r->last.footprints[tile * ZT_REUSE_PARTS + first / (ZT_BATCH / ZT_REUSE_PARTS)];
+    return &r->last.footprints[tile * ZT_REUSE_PARTS + first / ZT_REUSE_PIXELS];
 }
 
 #endif
