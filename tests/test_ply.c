@@ -194,19 +194,19 @@ static void binary_behind_another_line_end(void **state) {
     forget(&r);
 }
 
-/* Points and lines among the faces are left out, corners may repeat, a concave polygon is cut
- * where it has to be. */
+/* Points and lines among the faces are left out, and triangles without area; a concave polygon
+ * is cut where it has to be. */
 static void faces_of_all_sizes(void **state) {
     (void)state;
     reading r;
     read_text(&r, ASCII_HEADER VERTICES(5)
                       FACES(7) "end_header\n0 0 0 2 0 0 2 2 0 0 2 0 1 .5 0\n"
                                "0\n1 4\n2 0 1\n3 2 1 0\n4 0 1 2 3\n3 1 1 1\n4 1 2 4 0");
-    const uint32_t triangles[] = {2, 1, 0, 0, 1, 2, 0, 2, 3, 1, 1, 1};
-    assert_int_equal(mesh_of(&r)->triangle_count, 6);
+    const uint32_t triangles[] = {2, 1, 0, 0, 1, 2, 0, 2, 3};
+    assert_int_equal(mesh_of(&r)->triangle_count, 5);
     assert_memory_equal(r.mesh.triangles, triangles, sizeof triangles);
     /* The arrowhead 1 2 4 0 bends inward at 4: that is where it must be cut. */
-    for (int t = 4; t < 6; t++) {
+    for (int t = 3; t < 5; t++) {
         const uint32_t *c = r.mesh.triangles + 3 * t;
         assert_true(c[0] == 4 || c[1] == 4 || c[2] == 4);
     }
@@ -291,6 +291,42 @@ static void bounds(void **state) {
     forget(&r);
 }
 
+/* Triangles without area are left out in silence, however thin others are; those that lose it
+ * by rounding are told; where there are no others they stay. */
+static void without_area(void **state) {
+    (void)state;
+    const struct {
+        const char *type, *numbers, *faces;
+        int count, kept, warnings;
+    } cases[] = {
+        {"float", "0 0 0  1 1 1  3 3 3  3 3 3.000001", "3 0 1 2 3 0 1 3", 2, 1, 0},
+        {"float", "0 0 0  1e18 0 0  1e18 1e-20 0  3e17 0 0", "3 0 1 2 3 0 1 3", 2, 1, 0},
+        {"float", "0 0 0  1 1 1  3 3 3  3 3 3", "3 0 1 2 3 1 2 3", 2, 2, 0},
+        {"double", "0 0 0  1 0 0  0 1 0  1e-12 1e-12 0", "3 0 1 2 3 0 1 3", 2, 1, 1},
+        {"double", "-1 0 0  1 0 0  0 1 0  0.5 0 0", "3 0 1 2 3 1 3 1", 2, 1, 0},
+        {"double", "-1 0 0  1 0 0  0 1 0  -1 0 1e-12", "3 0 1 2 3 0 1 3", 2, 2, 0},
+        {"double", "-1 0 0  1 0 0  0 1 0  1 1e-12 0", "3 0 1 2 3 0 1 3", 2, 1, 1},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        file.size = 0;
+        put_text(ASCII_HEADER
+                 "element vertex 4\nproperty %s x\nproperty %s y\nproperty %s z\n"
+                 "element face %d\nproperty list uchar int vertex_indices\nend_header\n%s %s",
+                 cases[k].type, cases[k].type, cases[k].type, cases[k].count, cases[k].numbers,
+                 cases[k].faces);
+        reading r;
+        read_file(&r);
+        if (r.status != ZT_OK) fail_msg("case %d: %s", (int)k, r.text);
+        if (r.mesh.triangle_count != cases[k].kept || r.warning_count != cases[k].warnings)
+            fail_msg("case %d: %d triangles, %d warnings", (int)k, (int)r.mesh.triangle_count,
+                     r.warning_count);
+        if (r.warning_count)
+            assert_string_equal(r.text, "triangles too fine for 24 binary digits around the "
+                                        "model's middle: 1; they are left out");
+        forget(&r);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type),
@@ -303,6 +339,7 @@ int main(void) {
         cmocka_unit_test(strips),
         cmocka_unit_test(origins),
         cmocka_unit_test(bounds),
+        cmocka_unit_test(without_area),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -246,7 +246,46 @@ static bool find_bounds(const reader *r, double low[3], double high[3]) {
     return are_floats;
 }
 
-static zt_status write_mesh(const reader *r, zt_mesh *mesh, zt_arena *arena) {
+/* Whether three points span an area: of floats, exactly. */
+static bool spans_area(const double a[3], const double b[3], const double c[3]) {
+    double e[3], f[3];
+    for (int axis = 0; axis < 3; axis++) {
+        e[axis] = b[axis] - a[axis];
+        f[axis] = c[axis] - a[axis];
+    }
+    return e[1] * f[2] != e[2] * f[1] || e[2] * f[0] != e[0] * f[2] ||
+           e[0] * f[1] != e[1] * f[0];
+}
+
+/* Leaves out triangles without an area, of which there is nothing to see, unless all are so;
+ * whether there were any. */
+static bool leave_out_lines(reader *r, const float *positions) {
+    int64_t kept = 0, lost = 0;
+    for (int64_t i = 0; i < r->triangle_count; i++) {
+        const uint32_t *of = r->triangles + 3 * i;
+        double rounded[3][3];
+        for (int k = 0; k < 3; k++)
+            for (int axis = 0; axis < 3; axis++)
+                rounded[k][axis] = (double)positions[3 * (int64_t)of[k] + axis];
+        if (spans_area(rounded[0], rounded[1], rounded[2]))
+            memmove(r->triangles + 3 * kept++, of, 3 * sizeof *of);
+        else
+            lost +=
+                spans_area(r->positions + 3 * (int64_t)of[0], r->positions + 3 * (int64_t)of[1],
+                           r->positions + 3 * (int64_t)of[2]);
+    }
+    bool some = kept > 0 && kept < r->triangle_count;
+    if (some) r->triangle_count = kept;
+    if (some && lost > 0)
+        zt_tell_at(r->rows.source->listener, ZT_WARNING,
+                   &(zt_place){.file = r->rows.source->path},
+                   "triangles too fine for 24 binary digits around the model's middle: %lld; "
+                   "they are left out",
+                   (long long)lost);
+    return some;
+}
+
+static zt_status write_mesh(reader *r, zt_mesh *mesh, zt_arena *arena) {
     int32_t vertex_count = r->header.vertex->count;
     /* One float more, for readers that load a vertex as four. */
     float *positions = ZT_PUSH(arena, float, 3 * (size_t)vertex_count + 1);
@@ -254,9 +293,11 @@ static zt_status write_mesh(const reader *r, zt_mesh *mesh, zt_arena *arena) {
     double low[3], high[3], origin[3] = {0, 0, 0};
     if (!find_bounds(r, low, high))
         for (int axis = 0; axis < 3; axis++) origin[axis] = low[axis] / 2 + high[axis] / 2;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         for (int64_t i = axis; i < 3 * (int64_t)vertex_count; i += 3)
             positions[i] = (float)(r->positions[i] - origin[axis]);
+    if (leave_out_lines(r, positions)) find_bounds(r, low, high);
+    for (int axis = 0; axis < 3; axis++) {
         /* Rounding keeps order: these are the bounds of the rounded positions. */
         low[axis] = origin[axis] + (double)(float)(low[axis] - origin[axis]);
         high[axis] = origin[axis] + (double)(float)(high[axis] - origin[axis]);
