@@ -14,7 +14,7 @@
 
 /* Solids are not told from their own other sides where they are thinner than so many times what
  * is wrong. */
-#define THIN 16
+#define THIN 32
 
 /* What a precision holds. */
 typedef struct digits {
