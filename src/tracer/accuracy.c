@@ -27,7 +27,7 @@ typedef struct digits {
 } digits;
 #define WRONG (16 * 0x1p-24)
 static const digits single_digits = {WRONG, 1e3, 1e15, 1e-15, 64},
-                    double_digits = {16 * 0x1p-53, 1e12, 1e75, 1e-75, INT32_MAX};
+                    double_digits = {16 * 0x1p-53, 1e12, 1e40, 1e-40, INT32_MAX};
 
 /* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
  * double precision can tell. Looked for among so many at most. */
