@@ -216,6 +216,16 @@ static bool render_blocks(zt_frame *f, zt_render_thread *own, tile area, int ind
     return done;
 }
 
+/* Whether tiles that were touched are rendered by quarters: where batches are no larger anyway,
+ * or rays cost more than batches do. */
+static bool has_parts(const zt_frame *f, tile area) {
+    enum { FEW_THINGS = 32 };
+    const zt_needs *needs = &f->job->scene->needs;
+    bool costly = needs->mesh_count > 0 || needs->object_count > FEW_THINGS;
+    return f->copies && f->even && area.width == TILE_SIDE && area.height == TILE_SIDE &&
+           (costly || block_size(f->job->sampling.max) <= ZT_REUSE_PIXELS);
+}
+
 /* A tile of which parts may be copied: sets `rendered` where that is all it takes. */
 static bool render_parts(bool *rendered, zt_frame *f, zt_render_thread *own, tile area,
                          int index) {
@@ -262,8 +272,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         return true;
     }
     bool rendered = false;
-    if (f->copies && f->even && area.width == TILE_SIDE && area.height == TILE_SIDE &&
-        (!render_parts(&rendered, f, own, area, index) || rendered))
+    if (has_parts(f, area) && (!render_parts(&rendered, f, own, area, index) || rendered))
         return rendered;
     if (f->keeps)
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
