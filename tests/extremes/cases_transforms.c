@@ -46,6 +46,17 @@ static void make_sheared(stage *s, draw *d, double most) {
     fill(s, d, group, 3);
 }
 
+/* Planes alone, which reach far beyond where groups in groups leave their numbers small. */
+static void make_askew_planes(stage *s, draw *d, double most) {
+    int32_t group = -1;
+    for (int i = 0; i < 2; i++)
+        group = stage_group(s, group, stage_within(d, 2), draw_rotation(d), any_scale(d, most));
+    for (int i = 0; i < 3; i++)
+        stage_object(s, d, ZT_SHAPE_PLANE, stage_within(d, 1), 1, .2)->parent = group;
+    stage_shoot(s, d, STAGE_FROM_ASIDE, draw_magnitude(d, 1.5, 10), s->ray_limit / 2);
+    stage_shoot(s, d, STAGE_FROM_EYE, 0, s->ray_limit);
+}
+
 /* Flattened along one axis to that share, which a further group turns askew. */
 static void make_singular(stage *s, draw *d, double share) {
     stage_ball_mesh(s, 1, 4, 6, false);
@@ -62,6 +73,7 @@ const extreme_case cases_transforms[] = {
     {"sheared 1e2", make_sheared, 1e2, 16, 64, 1, 0},
     {"sheared 1e4", make_sheared, 1e4, 16, 64, 1, 0},
     {"sheared 1e6", make_sheared, 1e6, 16, 64, 1, 0},
+    {"planes 1e6", make_askew_planes, 1e3, 16, 64, 1, 0},
     {"flattened 1e-3", make_singular, 1e-3, 12, 64, 1, 0},
     {"flattened 1e-6", make_singular, 1e-6, 12, 64, 1, 0},
     {"flattened 1e-12", make_singular, 1e-12, 12, 64, 1, 0},

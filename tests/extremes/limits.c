@@ -13,7 +13,8 @@
 
 const limit limits[] = {
     /* 17 of 512 rays, 5e-10 of the mesh's size further on; a solid's own surface is left out
-     * exactly, a mesh's is escaped by an offset, which is along a normal that this has not. */
+     * exactly, a mesh's is escaped by an offset, which is along a normal that this has not.
+     * Models have none: reading leaves them out. */
     {"zero area", PROBE_DOUBLE, "a mesh's triangle without area is met again when it is left"},
     {"edges of 1e20", PROBE_SINGLE, "a light of 1e40 is more than single precision holds"},
     {"stretched 1e4", PROBE_SINGLE, ASKEW},
