@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "reel.h"
+#include "tracer/footprint.h"
 
 static const vec3 white = {1, 1, 1}, red = {1, 0.1, 0.1};
 
@@ -304,8 +305,71 @@ static void decisions_go_beyond_tiles(void **state) {
     assert_true(copied > 4 * 2 * 12 * REEL_TILES / 8);
 }
 
+static float any(uint32_t *state, float least, float most) {
+    *state = *state * 1664525 + 1013904223;
+    return least + (most - least) * (float)(*state >> 8) / 0x1p24F;
+}
+
+static zt_bvh_box any_box(uint32_t *state, float reach, float side) {
+    zt_bvh_box box;
+    for (int i = 0; i < 3; i++) {
+        box.low[i] = any(state, -reach, reach);
+        box.high[i] = box.low[i] + any(state, 0, side);
+    }
+    return box;
+}
+
+static vec3 any_point(uint32_t *state, const zt_bvh_box *box) {
+    return (vec3){(double)any(state, box->low[0], box->high[0]),
+                  (double)any(state, box->low[1], box->high[1]),
+                  (double)any(state, box->low[2], box->high[2])};
+}
+
+/* How near a straight way comes to a place. */
+static double distance_to(vec3 from, vec3 to, vec3 place) {
+    vec3 way = vec3_sub(to, from), aside = vec3_sub(place, from);
+    double share = vec3_dot(aside, way) / vec3_dot(way, way);
+    share = share > 0 ? share < 1 ? share : 1 : 0;
+    return vec3_length(vec3_sub(aside, vec3_scale(way, share)));
+}
+
+/* A ball is passed by where its box is not; and never where some way meets it. */
+static void balls_are_less_than_boxes(void **state) {
+    (void)state;
+    uint32_t random = 1;
+    int passed = 0, passed_as_box = 0;
+    for (int i = 0; i < 20000; i++) {
+        zt_footprint f = {.steps = {{.there = true, .ends = true}}};
+        zt_footstep *step = &f.steps[0];
+        step->origins = any_box(&random, 4, 0.3F);
+        step->points = any_box(&random, 4, 1);
+        for (int k = 0; k < 3; k++) {
+            step->directions.low[k] = -1;
+            step->directions.high[k] = 1;
+        }
+        zt_difference place = {any_box(&random, 2, 0), true, true};
+        float radius = any(&random, 0.1F, 1.5F);
+        for (int k = 0; k < 3; k++) place.box.high[k] = place.box.low[k] + 2 * radius;
+        vec3 middle = {(double)(place.box.low[0] + radius), (double)(place.box.low[1] + radius),
+                       (double)(place.box.low[2] + radius)};
+        const zt_outline nothing = {0};
+        zt_differences d = {.places = &place, .place_count = 1, .stretch = 1, .now = &nothing};
+        bool touched = zt_footprint_touched(&f, &d);
+        for (int k = 0; k < 64 && !touched; k++)
+            assert_true(distance_to(any_point(&random, &step->origins),
+                                    any_point(&random, &step->points),
+                                    middle) > (double)radius * (1 - 1e-6));
+        passed += !touched;
+        place.round = false;
+        passed_as_box += !zt_footprint_touched(&f, &d);
+    }
+    assert_in_range(passed_as_box, 1000, 20000);
+    assert_in_range(passed - passed_as_box, 500, 20000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(balls_are_less_than_boxes),
         cmocka_unit_test(what_holds_still_is_copied),
         cmocka_unit_test(what_moves_is_rendered),
         cmocka_unit_test(shadows_fall_from_outside),

@@ -12,7 +12,7 @@ enum { CHECKED = offsetof(zt_keepsake_head, checksum) + sizeof(zt_hash) };
 
 /* Changes whenever bytes, or what footprints and outlines say, become others. */
 static zt_hash version_of(const char *arithmetic) {
-    const uint64_t numbers[] = {1,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
+    const uint64_t numbers[] = {2,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
                                 ZT_BATCH, sizeof(zt_footprint), sizeof(zt_outline)};
     const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
                              zt_hash_bytes(arithmetic, strlen(arithmetic))};
@@ -75,7 +75,7 @@ static void pass_footprint(stream *s, zt_footprint *f) {
 }
 
 static void pass_thing(stream *s, zt_outline_thing *t) {
-    PASS_FLAGS(s, &t->moves, &t->unbounded);
+    PASS_FLAGS(s, &t->moves, &t->unbounded, &t->round);
     pass(s, &t->box, sizeof t->box);
     pass(s, &t->stretch, sizeof t->stretch);
     pass(s, &t->shape, sizeof t->shape);

@@ -37,7 +37,7 @@ static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now
     for (int i = 0; i < 3; i++) bounded &= thing->box.low[i] <= thing->box.high[i];
     d->all |= !bounded;
     d->stretch = fmaxf(d->stretch, thing->stretch);
-    d->places[d->place_count++] = (zt_difference){thing->box, now};
+    d->places[d->place_count++] = (zt_difference){thing->box, now, thing->round};
 }
 
 /* One of the two may be NULL, where a thing comes or goes. */
@@ -50,9 +50,10 @@ static void add_thing(zt_differences *d, const zt_outline_thing *before,
     if (!moved) return;
     if (before) add_place(d, before, false);
     if (now) add_place(d, now, true);
-    if (!before || !now || !overlap(&before->box, &now->box)) return;
+    if (!before || !now || !overlap(&before->box, &now->box) || now->round) return;
     d->place_count--;
-    d->places[d->place_count - 1] = (zt_difference){around(&before->box, &now->box), true};
+    d->places[d->place_count - 1] =
+        (zt_difference){around(&before->box, &now->box), true, false};
 }
 
 static zt_status add_things(zt_differences *d, const zt_outline *before, const zt_outline *now,
@@ -77,6 +78,7 @@ static void share_boxes(zt_differences *d) {
             zt_difference *shared = &d->places[kept - 1];
             place.box = around(&shared->box, &place.box);
             place.now |= shared->now;
+            place.round = false;
             *shared = place;
         } else {
             d->places[kept++] = place;
@@ -164,27 +166,67 @@ static bool passes(const zt_bvh_box *from, const zt_bvh_box *to, const zt_bvh_bo
     return !(low > high);
 }
 
+/* A box's middle, and how far it reaches from there. */
+typedef struct reach {
+    vec3 middle;
+    double radius;
+} reach;
+
+static reach reach_of(const zt_bvh_box *b) {
+    vec3 low = {(double)b->low[0], (double)b->low[1], (double)b->low[2]};
+    vec3 high = {(double)b->high[0], (double)b->high[1], (double)b->high[2]};
+    return (reach){vec3_scale(vec3_add(low, high), 0.5), vec3_length(vec3_sub(high, low)) / 2};
+}
+
+/* False only where no such way meets the ball in a box. After a share s of the way it is within
+ * radius + s grows of p + s v; how much further from there the ball's middle is, is least at
+ * one place, since that is convex. */
+static bool passes_ball(const zt_bvh_box *from, const zt_bvh_box *to, const zt_bvh_box *box,
+                        float stretch) {
+    reach a = reach_of(from), b = reach_of(to), ball = reach_of(box);
+    double room = (size_of(from) + size_of(to) + size_of(box)) * (double)stretch *
+                  (double)(ROOM * BOX_ROUNDINGS * REAL_ROUNDING);
+    vec3 v = vec3_sub(b.middle, a.middle), p = vec3_sub(a.middle, ball.middle);
+    double grows = b.radius - a.radius, length2 = vec3_dot(v, v), along = vec3_dot(p, v);
+    double s = grows > 0 ? 1 : 0, rest = length2 - grows * grows;
+    if (rest > 0) {
+        double aside2 = most_of(vec3_dot(p, p) - along * along / length2, 0);
+        s = grows * sqrt(aside2 / (length2 * rest)) - along / length2;
+        s = s > 0 ? s < 1 ? s : 1 : 0;
+    }
+    double distance = vec3_length(vec3_add(p, vec3_scale(v, s)));
+    return !(distance > ball.radius / sqrt(3) + a.radius + s * grows + room);
+}
+
+/* Whether such a way may meet a place. */
+static bool way_meets(const zt_bvh_box *from, const zt_bvh_box *to, const zt_difference *place,
+                      float stretch) {
+    return passes(from, to, &place->box, stretch) &&
+           (!place->round || passes_ball(from, to, &place->box, stretch));
+}
+
 static zt_box box_of(const zt_bvh_box *b) {
     return (zt_box){{b->low[0], b->low[1], b->low[2]}, {b->high[0], b->high[1], b->high[2]}};
 }
 
 /* Whether rays of a step may meet a place. */
-static bool rays_meet(const zt_footstep *step, const zt_bvh_box *place, float stretch) {
-    if (!step->leaves && !passes(&step->origins, &step->points, place, stretch)) return false;
+static bool rays_meet(const zt_footstep *step, const zt_difference *place, float stretch) {
+    if (!step->leaves && !way_meets(&step->origins, &step->points, place, stretch))
+        return false;
     zt_bundle bundle = {.origins = box_of(&step->origins),
                         .directions = box_of(&step->directions),
                         .source = -1};
-    zt_box box = box_of(place);
+    zt_box box = box_of(&place->box);
     return zt_bundle_meets(&bundle, &box, ROOM * stretch);
 }
 
 /* Whether the shadow rays of a step's points may meet a place. */
 static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const zt_outline *now,
-                         const zt_bvh_box *place, float stretch) {
+                         const zt_difference *place, float stretch) {
     for (int32_t i = 0; i < now->lamp_count; i++) {
         const zt_outline_lamp *lamp = &now->lamps[i];
         if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->place)) &&
-            passes(&step->points, &lamp->bounds, place, stretch))
+            way_meets(&step->points, &lamp->bounds, place, stretch))
             return true;
     }
     return false;
@@ -194,8 +236,8 @@ static bool place_touches(const zt_footprint *f, const zt_differences *d,
                           const zt_difference *place) {
     for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
         const zt_footstep *step = &f->steps[i];
-        if (place->now && rays_meet(step, &place->box, d->stretch)) return true;
-        if (step->ends && shadows_meet(f, step, d->now, &place->box, d->stretch)) return true;
+        if (place->now && rays_meet(step, place, d->stretch)) return true;
+        if (step->ends && shadows_meet(f, step, d->now, place, d->stretch)) return true;
     }
     return false;
 }

@@ -57,7 +57,7 @@ static inline uint64_t zt_footprint_bit(zt_hash of) { return UINT64_C(1) << (of.
 /* One thing as rays can tell it: equal hashes, equal hits and looks. */
 typedef struct zt_outline_thing {
     bool moves; /* while the shutter is open: what rays tell depends on their times */
-    bool unbounded;
+    bool unbounded, round; /* round: a ball, as wide as the box */
     zt_bvh_box box;
     float stretch; /* as in zt_primitive */
     zt_hash shape, looks;
@@ -93,7 +93,8 @@ zt_status zt_outline_make(zt_outline *outline, const zt_ready *ready, zt_arena *
 /* Space where something that moved was, or is. */
 typedef struct zt_difference {
     zt_bvh_box box;
-    bool now; /* or only before */
+    bool now;   /* or only before */
+    bool round; /* the ball in the box alone */
 } zt_difference;
 
 /* What differs between two outlines, the second of which must be there as long. Things and

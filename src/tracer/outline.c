@@ -134,6 +134,7 @@ static zt_outline_thing thing_of(const zt_tracer *tracer, int32_t index, zt_hash
     zt_hash shape = shape_of(tracer, index);
     return (zt_outline_thing){.moves = moves,
                               .unbounded = p->kind == ZT_PRIMITIVE_PLANE,
+                              .round = p->kind == ZT_PRIMITIVE_SPHERE && !p->poses,
                               .box = zt_outwards(&p->box),
                               .stretch = (float)p->stretch,
                               .shape = moves ? joined(shape, times) : shape,
