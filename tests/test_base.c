@@ -13,6 +13,7 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/hash.h"
+#include "base/pages.h"
 #include "base/text.h"
 
 /* XXH3's checksum of nothing, from its specification. */
@@ -302,6 +303,21 @@ static void every_status_has_words(void **state) {
     assert_non_null(zt_status_text((zt_status)1000));
 }
 
+/* Memory of any size is all there, begins at a line of a cache, and is free()'s. */
+static void pages_are_lines(void **state) {
+    (void)state;
+    const size_t sizes[] = {1, 64, 1000, (size_t)1 << 21, ((size_t)1 << 22) + 5};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        char *memory = zt_pages_alloc(sizes[i]);
+        assert_non_null(memory);
+        assert_int_equal((uintptr_t)memory % 64, 0);
+        memset(memory, 7, sizes[i]);
+        assert_int_equal(memory[sizes[i] - 1], 7);
+        free(memory);
+    }
+    assert_null(zt_pages_alloc(SIZE_MAX / 2));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(checksums),
@@ -312,6 +328,7 @@ int main(void) {
         cmocka_unit_test(nearest_names),
         cmocka_unit_test(numbers),
         cmocka_unit_test(text_helpers),
+        cmocka_unit_test(pages_are_lines),
         cmocka_unit_test(messages),
         cmocka_unit_test(messages_at_the_edge),
         cmocka_unit_test(every_status_has_words),

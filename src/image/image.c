@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/pages.h"
 #include "image/info.h"
 #include "image/stamps.h"
 
@@ -31,9 +32,7 @@ zt_status zt_image_create(zt_image **out, int width, int height) {
     image->width = width;
     image->height = height;
     image->linear = true;
-    /* Whole lines of a cache, so that four pixels are one. */
-    size_t line = 64, size = (pixel_count * 4 * sizeof *image->pixels + line - 1) / line * line;
-    image->pixels = aligned_alloc(line, size);
+    image->pixels = zt_pages_alloc(pixel_count * 4 * sizeof *image->pixels);
     if (!image->pixels) {
         free(image);
         return ZT_EMEMORY;

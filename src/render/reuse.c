@@ -8,6 +8,7 @@
 #endif
 
 #include "base/diag.h"
+#include "base/pages.h"
 
 /* One tile in so many must be copied for it to be worth it; twice in a row it may not be. Then
  * it rests, each time twice as long. */
@@ -33,7 +34,7 @@ void zt_picture_close(zt_picture *p) {
 zt_status zt_picture_open(zt_picture *p, int width, int height) {
     if (p->width == width && p->height == height) return ZT_OK;
     zt_picture_close(p);
-    p->pixels = calloc(4 * (size_t)width * (size_t)height, sizeof *p->pixels);
+    p->pixels = zt_pages_alloc(4 * (size_t)width * (size_t)height * sizeof *p->pixels);
     p->footprints =
         calloc((size_t)zt_tile_count(width, height) * ZT_REUSE_PARTS, sizeof *p->footprints);
     if (!p->pixels || !p->footprints) {
