@@ -2,7 +2,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
 #if defined __SSE__
 #include <xmmintrin.h>
 #endif
@@ -300,49 +299,6 @@ int zt_reuse_distance(const zt_frame *f, int x, int y, int most) {
                 nearest = min_int(nearest,
                                   max_int(gap(x, column * TILE_SIDE), gap(y, row * TILE_SIDE)));
     return nearest;
-}
-
-void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *f) {
-    rays->footprint = footprint;
-    rays->outline = &f->job->reuse->last.outline;
-}
-
-static void hold(zt_bvh_box *all, const zt_bvh_box *box, bool first) {
-    if (first) *all = *box;
-    for (int i = 0; i < 3; i++) {
-        all->low[i] = all->low[i] < box->low[i] ? all->low[i] : box->low[i];
-        all->high[i] = all->high[i] > box->high[i] ? all->high[i] : box->high[i];
-    }
-}
-
-static void join(zt_footprint *all, const zt_footprint *f) {
-    for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
-        zt_footstep *to = &all->steps[i];
-        const zt_footstep *from = &f->steps[i];
-        hold(&to->origins, &from->origins, !to->there);
-        hold(&to->directions, &from->directions, !to->there);
-        if (from->ends) hold(&to->points, &from->points, !to->ends);
-        to->there = true;
-        to->ends |= from->ends;
-        to->leaves |= from->leaves;
-    }
-    all->met |= f->met;
-    all->faced |= f->faced;
-    all->lit |= f->lit;
-    all->doubtful |= f->doubtful;
-    all->restless |= f->restless;
-}
-
-void zt_reuse_note(zt_frame *f, const zt_footprint *footprint, int column, int row) {
-    zt_reuse *r = f->job->reuse;
-    const int half = TILE_SIDE / 2, tile_columns = f->tile_columns;
-    int tile = row / TILE_SIDE * tile_columns + column / TILE_SIDE;
-    int part = row / half % 2 * 2 + column / half % 2;
-    atomic_flag *lock = &r->locks[tile % ZT_REUSE_LOCKS];
-    if (footprint->doubtful) atomic_store_explicit(&f->doubtful, true, memory_order_relaxed);
-    while (atomic_flag_test_and_set_explicit(lock, memory_order_acquire)) thrd_yield();
-    join(&r->last.footprints[tile * ZT_REUSE_PARTS + part], footprint);
-    atomic_flag_clear_explicit(lock, memory_order_release);
 }
 
 /* ---- pixels ---------------------------------------------------------------------------------
