@@ -145,7 +145,10 @@ static void reasons(void **state) {
          "double precision: coin is stretched 1e+09 times more one way than another", 4},
         {"camera: { position: [0, 0, 50] }\n"
          "objects:\n"
-         "  - box: { name: grain, center: [0, 0, 0], size: 1e-4, material: clay }\n",
+         "  - group:\n"
+         "      scale: [1, 3, 1]\n"
+         "      objects:\n"
+         "        - box: { name: grain, center: [0, 0, 0], size: 1e-4, material: clay }\n",
          "double precision: grain is 0.0001 thin and its numbers reach 50; single precision "
          "would be off by 4.8e-05",
          4},

@@ -12,7 +12,7 @@
 #define SEEN      (1.0 / 8)
 #define SEEN_LAMP (1.0 / 64)
 
-/* Solids are not told from their own other sides where they are thinner than so many times what
+/* The sides of what is stretched are not told apart where it is thinner than so many times what
  * is wrong. */
 #define THIN 32
 

@@ -63,7 +63,7 @@ typedef struct zt_extent {
     bool perhaps;
     double size;    /* the largest number in its arithmetic */
     double least;   /* its smallest size that counts; infinite for planes */
-    double thin;    /* of a solid: its smallest measure across, halved; else infinite */
+    double thin;    /* of what groups stretch: half of its smallest measure; else infinite */
     double grain;   /* by how much doubles round its place, wherever the camera is */
     double near;    /* how far away the surface is from the camera, at least about */
     double stretch; /* how many times more roundings than a sphere's it has */

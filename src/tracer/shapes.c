@@ -11,6 +11,10 @@
  */
 #define SIMILARITY_TOLERANCE 1e-12
 
+/* Things in groups that stretch no more than this one way than another are met on their right
+ * sides however thin they are. */
+#define PLAIN 2
+
 /* Triangles with a smaller sine of an angle are slivers. */
 #define SLIVER 0x1p-7
 
@@ -162,8 +166,11 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     m->extent->ways[1] = place->y;
     m->extent->ways[2] = vec3_scale(place->z, half);
     m->extent->faces = square > 0 ? 7 : round > 0 && half > 0 ? 4 : 0;
-    m->extent->least = m->extent->thin =
+    m->extent->least =
         fmin(vec3_length(place->x), fmin(vec3_length(place->y), vec3_length(place->z)));
+    xform undone = xform_inverse(m->world);
+    if (wide_longest(m->world) * wide_longest(&undone) > PLAIN)
+        m->extent->thin = m->extent->least;
     return true;
 }
 
@@ -369,7 +376,6 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     m->primitive->kind = ZT_PRIMITIVE_MESH;
     m->surface->closed = -1;
     ZT_REAL_NAME(zt_set_bounds)(m, vec3_sub(middle, around), vec3_add(middle, around));
-    m->extent->stretch = across * across_back;
     m->extent->middle = middle;
     m->extent->ways[0] = vec3_scale(place.x, half.x);
     m->extent->ways[1] = vec3_scale(place.y, half.y);
@@ -378,6 +384,8 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
     m->extent->perhaps = true;
     double inner = fmax(vec3_max_abs(vec3_sub(mesh->low, mesh->origin)),
                         vec3_max_abs(vec3_sub(mesh->high, mesh->origin)));
+    m->extent->stretch = across * across_back;
+    if (m->extent->stretch > PLAIN) m->extent->thin = inner / across_back;
     placed->reach = (real)reach;
     placed->inner = (real)inner;
     placed->room = (real)(reach * vec3_max_abs(place.shift) + inner);
