@@ -14,7 +14,7 @@
 
 /* The sides of what is stretched are not told apart where it is thinner than so many times what
  * is wrong. */
-#define THIN 32
+#define THIN 64
 
 /* What a precision holds. */
 typedef struct digits {
