@@ -179,7 +179,7 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
         for (int k = 0; k < now; k++)
             zt_samples_take(&own->places, &own->rays, job, own->column, own->row, k * count,
                             count, f->at_edges ? ZT_SAMPLE_MIDDLE : done + k);
-        zt_frame_trace(f, own, now * count);
+        zt_frame_trace(f, own, count, now);
         for (int k = 0; k < now; k++) {
             own->count.left_out +=
                 add_samples(&own->sum, own->taken, &own->light, k * count, count);
@@ -219,11 +219,8 @@ static bool render_blocks(zt_frame *f, zt_render_thread *own, tile area, int ind
 /* Whether tiles that were touched are rendered by quarters: where batches are no larger anyway,
  * or rays cost more than batches do. */
 static bool has_parts(const zt_frame *f, tile area) {
-    enum { FEW_THINGS = 32 };
-    const zt_needs *needs = &f->job->scene->needs;
-    bool costly = needs->mesh_count > 0 || needs->object_count > FEW_THINGS;
     return f->copies && f->even && area.width == TILE_SIDE && area.height == TILE_SIDE &&
-           (costly || block_size(f->job->sampling.max) <= ZT_REUSE_PIXELS);
+           (f->costly || block_size(f->job->sampling.max) <= ZT_REUSE_PIXELS);
 }
 
 /* A tile of which parts may be copied: sets `rendered` where that is all it takes. */
@@ -360,6 +357,11 @@ static zt_status render_all(zt_frame *f) {
     return status;
 }
 
+static bool is_costly(const zt_needs *needs) {
+    enum { FEW_THINGS = 32 };
+    return needs->mesh_count > 0 || needs->object_count > FEW_THINGS;
+}
+
 zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job *job,
                     zt_render_work *work, zt_pool *pool) {
     int tile_count = zt_tile_count(image->width, image->height);
@@ -372,6 +374,7 @@ zt_status zt_render(zt_image *image, zt_render_count *count, const zt_render_job
                   .tile_columns = zt_tile_columns(image->width),
                   .tile_count = tile_count,
                   .run = run_length(tile_count, thread_count),
+                  .costly = is_costly(&job->scene->needs),
                   .serial = job->reuse ? ++job->reuse->serial : 0};
     for (int i = 0; i < thread_count; i++) work->threads[i].count = (zt_render_count){0};
     zt_status status = render_all(&f);

@@ -113,35 +113,6 @@ static void look_for_strange(zt_frame *f, const int32_t *slots, const uint32_t *
     }
 }
 
-/* Exchanges rows, of `width` numbers of 32 bits, and columns. */
-static void turn(void *numbers, int width, int height) {
-    enum { SIZE = 4 };
-    static_assert(sizeof(float) == SIZE, "a number is one of 32 bits");
-    char *own = numbers, turned[SIZE * ZT_BATCH];
-    for (int i = 0; i < width; i++)
-        for (int k = 0; k < height; k++)
-            memcpy(turned + SIZE * (i * height + k), own + SIZE * (k * width + i), SIZE);
-    memcpy(own, turned, (size_t)width * (size_t)height * SIZE);
-}
-
-/* Traces `now` samples of each of `count` pixels: of those at edges, which have few others
- * nearby, with the samples of each side by side, so that rays that travel together stay close.
- */
-static void trace(zt_frame *f, zt_render_thread *own, int count, int now) {
-    if (f->at_edges) {
-        turn(own->places.x, count, now);
-        turn(own->places.y, count, now);
-    }
-    zt_frame_trace(f, own, now * count);
-    if (f->at_edges) {
-        turn(own->light.r, now, count);
-        turn(own->light.g, now, count);
-        turn(own->light.b, now, count);
-        turn(own->light.path, now, count);
-        if (f->job->transparent) turn(own->light.a, now, count);
-    }
-}
-
 /* Samples number asked + done and on, `now` of each of the listed slots. */
 static void take_samples(const zt_round_job *j, zt_render_thread *own, const int32_t *slots,
                          int count, int done, int now) {
@@ -150,7 +121,7 @@ static void take_samples(const zt_round_job *j, zt_render_thread *own, const int
     for (int k = 0; k < now; k++)
         zt_samples_take(&own->places, &own->rays, f->job, own->column, own->row, k * count,
                         count, j->asked + done + k);
-    trace(f, own, count, now);
+    zt_frame_trace(f, own, count, now);
     if (f->at_edges) look_for_strange(f, slots, own->light.path, now, count);
     for (int k = 0; k < now; k++) {
         int half = done + k >= first_half;

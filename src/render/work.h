@@ -47,6 +47,7 @@ typedef struct zt_frame {
     int run;         /* tiles that a thread takes at a time */
     bool even;       /* as many samples in each pixel, which follow from nothing else; */
     uint32_t *paths; /* plane of what the middles of pixels saw; of at_edges */
+    bool costly;     /* rays look into hierarchies, and cost more than what else batches do */
     bool at_edges; /* or first one sample in the middle of each pixel, then more at edges alone
                     */
     /* Of the job's reuse: it takes down what is rendered; could copy; does so. */
@@ -65,16 +66,10 @@ static inline int zt_tile_count(int width, int height) {
 static inline int min_int(int a, int b) { return a < b ? a : b; }
 static inline int max_int(int a, int b) { return a > b ? a : b; }
 
-/* Traces the batch's first `count` places. */
-static inline void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count) {
-    const zt_render_job *job = f->job;
-    const zt_places *p = &own->places;
-    zt_lens_rays(&own->rays, job->lens, p->x, p->y, p->u, p->v, count);
-    own->light.counts = (zt_ray_counts){0};
-    job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
-    own->count.samples += count;
-    zt_ray_counts_add(&own->count.rays, &own->light.counts);
-}
+/* Traces `now` samples of each of `count` pixels, of which places and light lie one sample of
+ * all pixels after the other. Where rays cost much, or have few others nearby, the samples of
+ * each pixel travel side by side (render/trace.c). */
+void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now);
 
 /* Whether somebody asked to stop. */
 static inline bool zt_frame_stopped(zt_frame *f) {
