@@ -347,7 +347,7 @@ static void balls_are_less_than_boxes(void **state) {
             step->directions.low[k] = -1;
             step->directions.high[k] = 1;
         }
-        zt_difference place = {any_box(&random, 2, 0), true, true};
+        zt_difference_place place = {any_box(&random, 2, 0), true, true};
         float radius = any(&random, 0.1F, 1.5F);
         for (int k = 0; k < 3; k++) place.box.high[k] = place.box.low[k] + 2 * radius;
         vec3 middle = {(double)(place.box.low[0] + radius), (double)(place.box.low[1] + radius),

@@ -37,7 +37,7 @@ static void add_place(zt_differences *d, const zt_outline_thing *thing, bool now
     for (int i = 0; i < 3; i++) bounded &= thing->box.low[i] <= thing->box.high[i];
     d->all |= !bounded;
     d->stretch = fmaxf(d->stretch, thing->stretch);
-    d->places[d->place_count++] = (zt_difference){thing->box, now, thing->round};
+    d->places[d->place_count++] = (zt_difference_place){thing->box, now, thing->round};
 }
 
 /* One of the two may be NULL, where a thing comes or goes. */
@@ -53,14 +53,18 @@ static void add_thing(zt_differences *d, const zt_outline_thing *before,
     if (!before || !now || !overlap(&before->box, &now->box) || now->round) return;
     d->place_count--;
     d->places[d->place_count - 1] =
-        (zt_difference){around(&before->box, &now->box), true, false};
+        (zt_difference_place){around(&before->box, &now->box), true, false};
+}
+
+static zt_pairing_list list_of(const zt_hash *first, size_t stride, int32_t count) {
+    return (zt_pairing_list){.first = first, .stride = stride, .count = count};
 }
 
 static zt_status add_things(zt_differences *d, const zt_outline *before, const zt_outline *now,
                             bool same_numbers, zt_arena *arena) {
     const zt_outline_thing *was = before->things, *is = now->things;
-    zt_pairing p = {.before = {&was->shape, sizeof *was, before->thing_count},
-                    .now = {&is->shape, sizeof *is, now->thing_count}};
+    zt_pairing p = {.before = list_of(&was->shape, sizeof *was, before->thing_count),
+                    .now = list_of(&is->shape, sizeof *is, now->thing_count)};
     int32_t i, k;
     ZT_TRY(zt_pairing_begin(&p, arena));
     while (zt_pairing_next(&i, &k, &p)) {
@@ -73,9 +77,9 @@ static zt_status add_things(zt_differences *d, const zt_outline *before, const z
 static void share_boxes(zt_differences *d) {
     int32_t share = (d->place_count + PLACES_MAX - 1) / PLACES_MAX, kept = 0;
     for (int32_t i = 0; i < d->place_count; i++) {
-        zt_difference place = d->places[i];
+        zt_difference_place place = d->places[i];
         if (i % share > 0) {
-            zt_difference *shared = &d->places[kept - 1];
+            zt_difference_place *shared = &d->places[kept - 1];
             place.box = around(&shared->box, &place.box);
             place.now |= shared->now;
             place.round = false;
@@ -101,8 +105,8 @@ static void add_lamp(zt_differences *d, const zt_outline_lamp *before,
 static zt_status add_lamps(zt_differences *d, const zt_outline *before, const zt_outline *now,
                            bool same_numbers, zt_arena *arena) {
     const zt_outline_lamp *was = before->lamps, *is = now->lamps;
-    zt_pairing p = {.before = {&was->place, sizeof *was, before->lamp_count},
-                    .now = {&is->place, sizeof *is, now->lamp_count}};
+    zt_pairing p = {.before = list_of(&was->place, sizeof *was, before->lamp_count),
+                    .now = list_of(&is->place, sizeof *is, now->lamp_count)};
     int32_t i, k;
     ZT_TRY(zt_pairing_begin(&p, arena));
     while (zt_pairing_next(&i, &k, &p))
@@ -121,7 +125,7 @@ zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
     if (d->all) return ZT_OK;
     d->order = !zt_hash_equal(before->order, now->order);
     size_t most = (size_t)before->thing_count + (size_t)now->thing_count;
-    d->places = ZT_PUSH(arena, zt_difference, most);
+    d->places = ZT_PUSH(arena, zt_difference_place, most);
     if (!d->places) return ZT_EMEMORY;
     ZT_TRY(add_things(d, before, now, same_numbers, arena));
     share_boxes(d);
@@ -199,8 +203,8 @@ static bool passes_ball(const zt_bvh_box *from, const zt_bvh_box *to, const zt_b
 }
 
 /* Whether such a way may meet a place. */
-static bool way_meets(const zt_bvh_box *from, const zt_bvh_box *to, const zt_difference *place,
-                      float stretch) {
+static bool way_meets(const zt_bvh_box *from, const zt_bvh_box *to,
+                      const zt_difference_place *place, float stretch) {
     return passes(from, to, &place->box, stretch) &&
            (!place->round || passes_ball(from, to, &place->box, stretch));
 }
@@ -210,7 +214,8 @@ static zt_box box_of(const zt_bvh_box *b) {
 }
 
 /* Whether rays of a step may meet a place. */
-static bool rays_meet(const zt_footstep *step, const zt_difference *place, float stretch) {
+static bool rays_meet(const zt_footstep *step, const zt_difference_place *place,
+                      float stretch) {
     if (!step->leaves && !way_meets(&step->origins, &step->points, place, stretch))
         return false;
     zt_bundle bundle = {.origins = box_of(&step->origins),
@@ -222,7 +227,7 @@ static bool rays_meet(const zt_footstep *step, const zt_difference *place, float
 
 /* Whether the shadow rays of a step's points may meet a place. */
 static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const zt_outline *now,
-                         const zt_difference *place, float stretch) {
+                         const zt_difference_place *place, float stretch) {
     for (int32_t i = 0; i < now->lamp_count; i++) {
         const zt_outline_lamp *lamp = &now->lamps[i];
         if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->place)) &&
@@ -233,7 +238,7 @@ static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const z
 }
 
 static bool place_touches(const zt_footprint *f, const zt_differences *d,
-                          const zt_difference *place) {
+                          const zt_difference_place *place) {
     for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
         const zt_footstep *step = &f->steps[i];
         if (place->now && rays_meet(step, place, d->stretch)) return true;

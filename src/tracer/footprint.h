@@ -91,11 +91,11 @@ zt_status zt_outline_make(zt_outline *outline, const zt_ready *ready, zt_arena *
  */
 
 /* Space where something that moved was, or is. */
-typedef struct zt_difference {
+typedef struct zt_difference_place {
     zt_bvh_box box;
     bool now;   /* or only before */
     bool round; /* the ball in the box alone */
-} zt_difference;
+} zt_difference_place;
 
 /* What differs between two outlines, the second of which must be there as long. Things and
  * lamps that came or went in between, or stand elsewhere in the order, are told apart from
@@ -107,7 +107,7 @@ typedef struct zt_differences {
     bool order;      /* hierarchies are of other things */
     uint64_t things; /* that went, moved, or look otherwise */
     uint64_t drawn_lamps, dimmed_lamps;
-    zt_difference *places;
+    zt_difference_place *places;
     int32_t place_count;
     float stretch; /* the largest of what moved */
     const zt_outline *now;

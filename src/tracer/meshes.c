@@ -3,15 +3,15 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 
 #include "base/bits.h"
 #include "base/diag.h"
-#include "base/pool.h"
 
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
-    zt_lock *building;    /* held while a mesh is built */
+    mtx_t building;       /* held while a mesh is built */
     zt_status status;     /* of that */
     zt_built_mesh *built; /* one for each mesh */
     zt_bvh *crowds[2];    /* of what does not stay; of what does */
@@ -24,9 +24,12 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
     *out = NULL;
     zt_meshes *m = calloc(1, sizeof *m);
     if (!m) return ZT_EMEMORY;
+    if (mtx_init(&m->building, mtx_plain) != thrd_success) {
+        free(m);
+        return ZT_EMEMORY;
+    }
     m->built = calloc((size_t)mesh_count + 1, sizeof *m->built);
     zt_status status = m->built ? zt_bvh_open(&m->builder, threads, listener) : ZT_EMEMORY;
-    if (status == ZT_OK) status = zt_lock_open(&m->building);
     if (status != ZT_OK) {
         zt_meshes_close(&m);
         return status;
@@ -40,7 +43,7 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
 void zt_meshes_close(zt_meshes **slot) {
     zt_meshes *m = *slot;
     if (!m) return;
-    for (int32_t i = 0; i < m->mesh_count; i++) {
+    for (int32_t i = 0; m->built && i < m->mesh_count; i++) {
         zt_bvh_free(&m->built[i].bvh);
         zt_clusters_free(&m->built[i].clusters);
         free(m->built[i].hull);
@@ -48,7 +51,7 @@ void zt_meshes_close(zt_meshes **slot) {
     for (int i = 0; i < 2; i++) zt_bvh_free(&m->crowds[i]);
     free(m->stayed);
     zt_bvh_close(&m->builder);
-    zt_lock_close(&m->building);
+    mtx_destroy(&m->building);
     free(m->built);
     free(m);
     *slot = NULL;
@@ -107,13 +110,13 @@ zt_status zt_meshes_begin(zt_built_mesh **built, zt_meshes *m, int32_t index) {
 
 bool zt_meshes_build(zt_built_mesh *b) {
     zt_meshes *m = b->owner;
-    zt_lock_take(m->building);
+    mtx_lock(&m->building);
     if (m->status == ZT_OK && !zt_mesh_is_built(b)) {
         m->status = build_hull(b);
         if (m->status == ZT_OK) m->status = build_bvh(b, m->builder);
         atomic_store_explicit(&b->built, m->status == ZT_OK, memory_order_release);
     }
-    zt_lock_release(m->building);
+    mtx_unlock(&m->building);
     return zt_mesh_is_built(b);
 }
 
@@ -134,6 +137,7 @@ zt_status zt_meshes_crowd(const zt_bvh **crowd, zt_meshes *m, bool stays,
     zt_bvh_box *stayed = realloc(m->stayed, size);
     m->stayed_count = stayed ? count : 0;
     if (!stayed) return ZT_EMEMORY;
-    m->stayed = memcpy(stayed, boxes, size);
+    m->stayed = stayed;
+    memcpy(stayed, boxes, size);
     return ZT_OK;
 }

@@ -50,7 +50,8 @@ static inline bool one_side(double u, double v, double w) {
  * to the opposite: lets through all that the exact ones let through, and few others. */
 static inline bool about_one_side(real x0, real y0, real x1, real y1, real x2, real y2) {
     real u = x1 * y2 - y1 * x2, v = x2 * y0 - y2 * x0, w = x0 * y1 - y0 * x1;
-    return (real_min(real_min(u, v), w) >= 0) | (real_max(real_max(u, v), w) <= 0);
+    int above = real_min(real_min(u, v), w) >= 0, below = real_max(real_max(u, v), w) <= 0;
+    return above | below;
 }
 
 /* Where ray number i meets triangle number k of a cluster, in (0, *t], `*triangle` being that
