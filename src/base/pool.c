@@ -1,6 +1,6 @@
 /* Two ways to use threads: a pool that shares out numbered tasks by an atomic counter, and an
- * errand boy that does one thing behind the caller's back; and locks. Locks are taken when work
- * begins and ends, never between tasks.
+ * errand boy that does one thing behind the caller's back. Locks are taken when work begins and
+ * ends, never between tasks.
  *
  * A thread that sleeps takes some 20 microseconds to wake, as long as a small frame's tiles
  * take. So a run does not wait for workers that have not come by the time all tasks are taken,
@@ -174,27 +174,6 @@ void zt_pool_run(zt_pool *pool, int task_count, void (*task)(void *user, int tas
     if (pool->busy_count > 0) wait_for_workers(pool);
     pthread_mutex_unlock(&pool->mutex);
 }
-
-struct zt_lock {
-    pthread_mutex_t mutex;
-};
-
-zt_status zt_lock_open(zt_lock **lock) {
-    *lock = calloc(1, sizeof **lock);
-    if (!*lock) return ZT_EMEMORY;
-    pthread_mutex_init(&(*lock)->mutex, NULL);
-    return ZT_OK;
-}
-
-void zt_lock_close(zt_lock **lock) {
-    if (*lock) pthread_mutex_destroy(&(*lock)->mutex);
-    free(*lock);
-    *lock = NULL;
-}
-
-void zt_lock_take(zt_lock *lock) { pthread_mutex_lock(&lock->mutex); }
-
-void zt_lock_release(zt_lock *lock) { pthread_mutex_unlock(&lock->mutex); }
 
 struct zt_errand {
     pthread_mutex_t mutex;

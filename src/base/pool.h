@@ -22,13 +22,6 @@ int zt_pool_thread_count(const zt_pool *pool);
 void zt_pool_run(zt_pool *pool, int task_count, void (*task)(void *user, int task, int worker),
                  void *user);
 
-/* What only one thread holds at a time. */
-typedef struct zt_lock zt_lock;
-zt_status zt_lock_open(zt_lock **lock);
-void zt_lock_close(zt_lock **lock);
-void zt_lock_take(zt_lock *lock); /* waits until nobody holds it */
-void zt_lock_release(zt_lock *lock);
-
 /* One thing done behind the caller's back, on a thread of its own. */
 typedef struct zt_errand zt_errand;
 
