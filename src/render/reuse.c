@@ -142,7 +142,10 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
         if (from) r->from = from;
         if (still) r->still = still;
         if (stamps) r->stamps = stamps;
-        if (!from || !still || !stamps) return ZT_EMEMORY;
+        if (!from || !still || !stamps) {
+            zt_picture_close(last); /* which has that many tiles no more */
+            return ZT_EMEMORY;
+        }
     }
     ZT_TRY(zt_picture_open(last, f->image->width, f->image->height));
     memset(r->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
@@ -250,12 +253,15 @@ zt_status zt_reuse_begin(zt_frame *f) {
 void zt_reuse_renounce(zt_frame *f) {
     zt_picture *last = &f->job->reuse->last;
     memset(f->job->reuse->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
-    f->copies = f->doubtful = false;
+    f->copies = false;
+    f->doubtful = false;
     if (f->rounds)
         (void)zt_rounds_open(&last->rounds, last->width, last->height,
                              last->rounds.negative != NULL);
-    for (int i = 0; i < zt_pool_thread_count(f->pool); i++)
-        f->work->threads[i].count.left_out = 0;
+    for (int i = 0; i < zt_pool_thread_count(f->pool); i++) {
+        zt_render_count *count = &f->work->threads[i].count;
+        count->left_out = count->rays.primary_avoided = 0;
+    }
 }
 
 static int64_t count_from(const zt_frame *f, zt_tile_source source) {

@@ -15,7 +15,7 @@ void zt_rounds_close(zt_rounds *r) {
     free(r->negative);
     free(r->first);
     free(r->spare);
-    *r = (zt_rounds){0};
+    memset(r, 0, sizeof *r);
 }
 
 static bool give_room(void **list, size_t count, size_t size) {
