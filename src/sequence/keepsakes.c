@@ -88,7 +88,11 @@ static void forget(zt_keepsakes *k, entry *e) {
 /* In the place of one of the same frame. */
 static zt_status remember(zt_keepsakes *k, const entry *new) {
     entry *old = find(k, new->frame);
-    if (old) forget(k, old);
+    if (old) {
+        k->size = k->size - old->size + new->size;
+        *old = *new;
+        return ZT_OK;
+    }
     if (k->count == k->room) {
         size_t room = k->room ? 2 * k->room : 64;
         entry *larger = reallocarray(k->entries, room, sizeof *larger);
@@ -118,8 +122,10 @@ static void drop(zt_keepsakes *k, entry *e) {
 
 static entry *cheapest(const zt_keepsakes *k, const entry *but) {
     entry *least = NULL;
-    for (entry *e = k->entries; e < k->entries + k->count; e++)
+    for (size_t i = 0; i < k->count; i++) {
+        entry *e = &k->entries[i];
         if (e != but && (!least || e->render_s < least->render_s)) least = e;
+    }
     return least;
 }
 
@@ -351,11 +357,11 @@ zt_status zt_keepsakes_open(zt_keepsakes **out, const zt_keepsakes_order *order,
     zt_keepsakes *k = calloc(1, sizeof *k);
     if (!k) return ZT_EMEMORY;
     int64_t shares = order->part_count > 0 ? order->part_count : 1;
-    *k = (zt_keepsakes){.renderer = r,
-                        .frames = order->frames,
-                        .shared = order->part_count > 0,
-                        .most = (uint64_t)(order->bytes_max / shares),
-                        .expected_s = INFINITY};
+    k->renderer = r;
+    k->frames = order->frames;
+    k->shared = order->part_count > 0;
+    k->most = (uint64_t)(order->bytes_max / shares);
+    k->expected_s = INFINITY;
     zt_status status = begin(k, order);
     if (status == ZT_OK && order->bytes_max > 0)
         *out = k;

@@ -212,6 +212,7 @@ static zt_status take(replaying *p, int number) {
                       .lamp_points = p->lamp_points,
                       .source = -1};
     ZT_TRY(follow(&sample.ray_count, p, probe));
+    ZT_TRY(zt_meshes_status(p->renderer->meshes));
     p->replay->sample(p->replay->user, &sample);
     return ZT_OK;
 }

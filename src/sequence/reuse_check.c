@@ -53,6 +53,7 @@ zt_status zt_reuse_check(zt_renderer *r, const zt_taking *taking, int64_t frame,
     if (status == ZT_OK)
         status = zt_guides_render(other, &job, &taking->exposure, &taking->passage, r->work,
                                   r->pool);
+    if (status == ZT_OK) status = zt_meshes_status(r->meshes);
     if (status == ZT_OK) status = compare(r, frame, image, other);
     zt_image_free(&other);
     return status;
