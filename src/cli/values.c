@@ -120,7 +120,7 @@ bool zt_value_bytes(int64_t *bytes, zt_option option, const char *text, zt_repor
         zt_report_say(report, ZT_ERROR,
                       "--%s %s: must be so many bytes, such as 500 MB or 2GB, or 0",
                       zt_options_known[option].name, text);
-    *bytes = (int64_t)number;
+    *bytes = good ? (int64_t)number : 0;
     return good;
 }
 
