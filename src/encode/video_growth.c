@@ -29,10 +29,10 @@ static zt_hash mix_text(zt_hash before, const char *text) {
 static void find_manner(zt_video_growth *g, const zt_output_format *format,
                         const char *conversion) {
     const zt_video_choice *c = g->choice;
-    const int64_t numbers[] = {
-        (int64_t)c->bitrate, format->width,    format->height,         format->rate.num,
-        format->rate.den,    format->view,     g->piece_frames,        c->pixels,
-        avcodec_version(),   avutil_version(), c->thread_count, g->like->color_trc};
+    const int64_t numbers[] = {(int64_t)c->bitrate, format->width,    format->height,
+                               format->rate.num,    format->rate.den, format->view,
+                               g->piece_frames,     c->pixels,        avcodec_version(),
+                               avutil_version(),    c->thread_count,  g->like->color_trc};
     zt_hash m = mix(mix_text((zt_hash){0}, c->encoder->name), numbers, sizeof numbers);
     m = mix_text(mix_text(mix_text(m, conversion), c->crf), c->preset);
     for (const zt_codec_setting *s = c->codec->settings; s->name; s++)
