@@ -6,17 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "tracer/crowds.h"
 #include "tracer/look.h"
 #include "tracer/triangles.h"
-
-#define look ZT_KERNEL_NAME(zt_bvh_look)
-
-/* How much further than the nearest hit so far a hierarchy looks, for the roundings of its
- * distances; and how long before the box around all there is its rays begin, as a share of its
- * size: so that they begin before all that is in it, and yet so near that single precision
- * keeps what counts. */
-#define LOOK_FURTHER (1 + 0x1p-18f)
-#define BEFORE       ((real)0x1p-4)
 
 /* How many times a hull is halved for a look at it, and from how many rays of a group on it is
  * quicker to ask them all about one triangle than one about all triangles of a cluster: where
@@ -221,7 +213,7 @@ static void pack(search *restrict s, int first, uint32_t set) {
     meet_halves(&l, boxes, 1, HULL_LEVEL);
     if (!any_meets(&l)) return;
     const int at = packed->count;
-    const real before = BEFORE * s->placed->inner;
+    const real before = ZT_LOOK_BEFORE * s->placed->inner;
     WIDE_LOOP for (int j = 0; j < ZT_BATCH_LANES; j++) {
         real slow = real_min(real_min(real_abs(l.kx[j]), real_abs(l.ky[j])), real_abs(l.kz[j]));
         real t0 = begin[j] - before * slow;
@@ -244,7 +236,7 @@ static void pack(search *restrict s, int first, uint32_t set) {
         packed->dx[at + j] = (float)l.dx[j];
         packed->dy[at + j] = (float)l.dy[j];
         packed->dz[at + j] = (float)l.dz[j];
-        packed->far[at + j] = looks ? (float)t * LOOK_FURTHER : -1;
+        packed->far[at + j] = looks ? (float)t * ZT_LOOK_FURTHER : -1;
     }
     s->first[at / ZT_BATCH_LANES] = first;
     packed->count += ZT_BATCH_LANES;
@@ -267,7 +259,7 @@ static uint32_t visit_cluster(void *user, int32_t box, int first, uint32_t set) 
         }
     for (uint32_t left = found; left; left &= left - 1) {
         int j = first + __builtin_ctz(left);
-        s->packed.far[j] = s->any ? -1 : (float)s->t[j] * LOOK_FURTHER;
+        s->packed.far[j] = s->any ? -1 : (float)s->t[j] * ZT_LOOK_FURTHER;
     }
     return found;
 }
@@ -306,7 +298,7 @@ static void search_mesh(search *s) {
     zt_lean_rays(&s->leaning, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, count);
     for (int at = 0; at < count; at += ZT_BATCH_LANES)
         s->alike[at / ZT_BATCH_LANES] = zt_lean_alike(&s->leaning, at);
-    look(s->placed->built->bvh, &s->packed, visit_cluster, s);
+    ZT_KERNEL_NAME(zt_bvh_look)(s->placed->built->bvh, &s->packed, visit_cluster, s);
     take(s);
 }
 
@@ -320,86 +312,21 @@ static void begin_search(search *s, zt_batch *rays, const zt_tracer *tracer, int
     s->packed.count = 0;
 }
 
-/* ---- crowds ---------------------------------------------------------------------------------
- */
-
-typedef struct crowd_search {
-    zt_batch *rays;
-    const zt_tracer *tracer;
-    const zt_crowd *crowd;
-    bool any;
-    real begin[ZT_BATCH]; /* where, along each ray, the hierarchy's begins */
-    zt_bvh_rays packed;
-} crowd_search;
-
-/* Some rays against one primitive of a crowd. Others of their group are asked as well, since it
- * costs nothing. */
-static uint32_t visit_primitive(void *user, int32_t box, int first, uint32_t set) {
-    crowd_search *c = user;
-    zt_batch *rays = c->rays;
-    int32_t index = c->crowd->primitives[box];
-    const zt_primitive *p = &c->tracer->primitives[index];
-    if (p->kind == ZT_PRIMITIVE_MESH) {
-        search s;
-        begin_search(&s, rays, c->tracer, index, c->any);
-        pack(&s, first, set);
-        search_mesh(&s);
-    } else {
-        ZT_KERNEL_NAME(zt_meet_lanes)(rays, c->tracer, index, first, c->any);
-    }
-    if (c->any)
-        for (int i = first; i < first + ZT_BATCH_LANES; i++)
-            c->packed.far[i] = rays->hit[i] >= 0 ? -1 : c->packed.far[i];
-    else
-        for (int i = first; i < first + ZT_BATCH_LANES; i++)
-            c->packed.far[i] = (float)(rays->t[i] - c->begin[i]) * LOOK_FURTHER;
-    return (1u << ZT_BATCH_LANES) - 1;
+void ZT_KERNEL_NAME(zt_search_mesh_lanes)(zt_batch *rays, const zt_tracer *tracer,
+                                          int32_t index, int first, uint32_t set, bool any) {
+    search s;
+    begin_search(&s, rays, tracer, index, any);
+    pack(&s, first, set);
+    search_mesh(&s);
 }
 
-/* Where a ray enters a box, or 0 where it begins within or never does. */
-static inline real enter_box(const zt_box *b, real ox, real oy, real oz, real dx, real dy,
-                             real dz) {
-    real x = real_min((b->low.x - ox) / dx, (b->high.x - ox) / dx);
-    real y = real_min((b->low.y - oy) / dy, (b->high.y - oy) / dy);
-    real z = real_min((b->low.z - oz) / dz, (b->high.z - oz) / dz);
-    real enter = real_max(real_max(x, y), z);
-    return enter > 0 && enter < REAL_INFINITY ? enter : 0;
-}
-
-static void search_crowd(zt_batch *rays, const zt_tracer *tracer, const zt_crowd *crowd,
-                         bool any) {
-    crowd_search c;
-    c.rays = rays;
-    c.tracer = tracer;
-    c.crowd = crowd;
-    c.any = any;
-    const zt_origins *from = rays->from;
-    const real before = BEFORE * zt_box_size(&crowd->box);
-    c.packed.count = rays->count;
-    for (int i = 0; i < rays->count; i++) {
-        real ox = from->x[i], oy = from->y[i], oz = from->z[i];
-        real dx = rays->dx[i], dy = rays->dy[i], dz = rays->dz[i];
-        real begin = real_max(enter_box(&crowd->box, ox, oy, oz, dx, dy, dz) - before, 0);
-        bool looks = !any || (rays->hit[i] < 0 && rays->t[i] > 0);
-        c.begin[i] = begin;
-        c.packed.ox[i] = (float)(ox + begin * dx);
-        c.packed.oy[i] = (float)(oy + begin * dy);
-        c.packed.oz[i] = (float)(oz + begin * dz);
-        c.packed.dx[i] = (float)dx;
-        c.packed.dy[i] = (float)dy;
-        c.packed.dz[i] = (float)dz;
-        c.packed.far[i] = looks ? (float)(rays->t[i] - begin) * LOOK_FURTHER : -1;
-    }
-    look(crowd->bvh, &c.packed, visit_primitive, &c);
-}
-
-/* ---- both -----------------------------------------------------------------------------------
+/* ---- all ------------------------------------------------------------------------------------
  */
 
 static void search_all(zt_batch *rays, const zt_bundle *bundle, const zt_tracer *tracer,
                        bool any) {
     for (int i = 0; i < tracer->crowd_count; i++)
-        search_crowd(rays, tracer, &tracer->crowds[i], any);
+        ZT_KERNEL_NAME(zt_search_crowd)(rays, tracer, &tracer->crowds[i], any);
     for (int32_t k = 0; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
