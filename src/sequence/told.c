@@ -166,7 +166,7 @@ int32_t zt_renderer_unmet(const zt_renderer *r,
     const teller t = {.say = say_it, .user = user, .animation = r->animation};
     const zt_scene *rest = &r->animation->rest;
     int32_t count = 0;
-    for (int32_t i = 0; i < rest->object_count; i++) {
+    for (int32_t i = 0; r->stats.frames > 0 && i < rest->object_count; i++) {
         const zt_object *o = &rest->objects[i];
         if (o->shape != ZT_SHAPE_MESH || zt_meshes_met(r->meshes, o->mesh)) continue;
         count++;
