@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/text.h"
 #include "encode/aside.h"
 #include "encode/video_check.h"
 #include "encode/video_encoder.h"
