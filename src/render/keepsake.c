@@ -1,7 +1,6 @@
 #include "render/keepsake.h"
 
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
@@ -12,7 +11,7 @@ enum { CHECKED = offsetof(zt_keepsake_head, checksum) + sizeof(zt_hash) };
 
 /* Changes whenever bytes, or what footprints and outlines say, become others. */
 static zt_hash version_of(const char *arithmetic) {
-    const uint64_t numbers[] = {2,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
+    const uint64_t numbers[] = {3,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
                                 ZT_BATCH, sizeof(zt_footprint), sizeof(zt_outline)};
     const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
                              zt_hash_bytes(arithmetic, strlen(arithmetic))};

@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/diag.h"
-
 /* Those of a larger picture than this allows are not all kept: bytes. */
 static const size_t bytes_max = (size_t)1 << 29;
 
