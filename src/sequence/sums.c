@@ -4,7 +4,6 @@
 #include <string.h>
 #include <threads.h>
 
-#include "base/diag.h"
 #include "base/hash.h"
 #include "image/stamps.h"
 

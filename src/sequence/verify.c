@@ -1,8 +1,6 @@
 #include "sequence/verify.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <zoetrope/aov.h>
 
