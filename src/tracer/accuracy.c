@@ -5,8 +5,6 @@
 
 #include <zoetrope/precision.h>
 
-#include "base/diag.h"
-
 /* What may be seen of a thing's being off: an eighth of a pixel; and a sixty-fourth of the way
  * to a lamp, by which its light changes by a thirtieth. */
 #define SEEN      (1.0 / 8)

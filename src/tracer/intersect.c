@@ -3,7 +3,6 @@
  * width of instructions and each precision (tracer/isa.h). */
 #include "tracer/intersect.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "tracer/motion_meet.h"

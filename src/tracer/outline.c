@@ -3,7 +3,6 @@
 #include "tracer/outline.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/diag.h"
 #include "base/hash.h"
