@@ -1,8 +1,6 @@
 /* What is saved where frames are mostly the same again: films rendered with tiles copied from
  * the frame before, and without, in turn; their images are compared bit by bit first. */
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/random.h"
