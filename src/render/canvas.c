@@ -1,9 +1,14 @@
 #include "render/canvas.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include <zoetrope/image.h>
+
 #include "base/diag.h"
+
+static_assert(ZT_IMAGE_SIDE_MAX - 1 <= UINT16_MAX, "columns and rows are numbers of 16 bits");
 
 enum { NO_ESTIMATE = -1, NOT_YET = -2 }; /* of pixels without slots, and with new ones */
 
