@@ -8,21 +8,13 @@ void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *f) {
     rays->outline = &f->job->reuse->last.outline;
 }
 
-static void hold(zt_bvh_box *all, const zt_bvh_box *box, bool first) {
-    if (first) *all = *box;
-    for (int i = 0; i < 3; i++) {
-        all->low[i] = all->low[i] < box->low[i] ? all->low[i] : box->low[i];
-        all->high[i] = all->high[i] > box->high[i] ? all->high[i] : box->high[i];
-    }
-}
-
 static void join(zt_footprint *all, const zt_footprint *f) {
     for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
         zt_footstep *to = &all->steps[i];
         const zt_footstep *from = &f->steps[i];
-        hold(&to->origins, &from->origins, !to->there);
-        hold(&to->directions, &from->directions, !to->there);
-        if (from->ends) hold(&to->points, &from->points, !to->ends);
+        zt_hold_box(&to->origins, &from->origins, !to->there);
+        zt_hold_box(&to->directions, &from->directions, !to->there);
+        if (from->ends) zt_hold_box(&to->points, &from->points, !to->ends);
         to->there = true;
         to->ends |= from->ends;
         to->leaves |= from->leaves;

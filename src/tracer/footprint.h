@@ -49,6 +49,15 @@ typedef struct zt_footprint {
     bool restless;       /* nothing is known: it counts as touched by anything */
 } zt_footprint;
 
+/* Grows a box by another one; `first`: it is none yet. */
+static inline void zt_hold_box(zt_bvh_box *all, const zt_bvh_box *more, bool first) {
+    if (first) *all = *more;
+    for (int i = 0; i < 3; i++) {
+        all->low[i] = all->low[i] < more->low[i] ? all->low[i] : more->low[i];
+        all->high[i] = all->high[i] > more->high[i] ? all->high[i] : more->high[i];
+    }
+}
+
 static inline uint64_t zt_footprint_bit(zt_hash of) { return UINT64_C(1) << (of.low >> 58); }
 
 /* ---- of scenes ------------------------------------------------------------------------------

@@ -7,13 +7,9 @@
 #include "tracer/outline.h"
 #include "tracer/points.h"
 
-static inline void zt_hold_box(zt_bvh_box *all, const zt_box *box, bool first) {
+static inline void zt_hold_reals(zt_bvh_box *all, const zt_box *box, bool first) {
     zt_bvh_box more = zt_outwards(box);
-    if (first) *all = more;
-    for (int i = 0; i < 3; i++) {
-        all->low[i] = all->low[i] < more.low[i] ? all->low[i] : more.low[i];
-        all->high[i] = all->high[i] > more.high[i] ? all->high[i] : more.high[i];
-    }
+    zt_hold_box(all, &more, first);
 }
 
 static inline zt_footstep *zt_step_after(zt_footprint *f, int32_t depth) {
@@ -26,8 +22,8 @@ static inline zt_footstep *zt_step_after(zt_footprint *f, int32_t depth) {
 static inline void zt_tread_rays(zt_footprint *f, int32_t depth, const zt_bundle *bundle,
                                  const zt_batch *rays, const zt_tracer *tracer) {
     zt_footstep *step = zt_step_after(f, depth);
-    zt_hold_box(&step->origins, &bundle->origins, !step->there);
-    zt_hold_box(&step->directions, &bundle->directions, !step->there);
+    zt_hold_reals(&step->origins, &bundle->origins, !step->there);
+    zt_hold_reals(&step->directions, &bundle->directions, !step->there);
     step->there = true;
     int32_t close = 0, gone = 0;
     for (int i = 0; tracer->crowd_count > 0 && i < rays->count; i++) close |= rays->close[i];
@@ -41,7 +37,7 @@ static inline void zt_tread_points(zt_footprint *f, int32_t depth, const zt_poin
                                    const zt_box *around, const zt_tracer *tracer,
                                    const zt_outline *outline) {
     zt_footstep *step = zt_step_after(f, depth);
-    zt_hold_box(&step->points, around, !step->ends);
+    zt_hold_reals(&step->points, around, !step->ends);
     step->ends = true;
     int count = points->source >= 0 ? 1 : points->count;
     for (int k = 0; k < count; k++) {
