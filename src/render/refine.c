@@ -137,6 +137,7 @@ zt_status zt_refine(zt_frame *f) {
         if (f->rounds) zt_rounds_reserve(f->rounds, canvas->round_count);
         run(f->pool, task_count(canvas->round_count, j.task_slots), zt_round_task, &j);
         if (f->stopped) return ZT_ESTOPPED;
+        if (f->doubtful) return ZT_OK; /* all is rendered once more */
         run(f->pool, task_count(canvas->round_count, DECISIONS), decide_task, &j);
         end_round(canvas, j.asked + j.more, f->at_edges);
     }

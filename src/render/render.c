@@ -349,7 +349,7 @@ static zt_status render_all(zt_frame *f) {
     if (f->even) fill_channels(f->image, &job->sampling);
     ZT_TRY(zt_reuse_begin(f));
     zt_status status = render_once(f);
-    if (status == ZT_OK && f->copies && f->doubtful) {
+    if (status == ZT_OK && f->doubtful) {
         zt_reuse_renounce(f);
         status = render_once(f);
     }

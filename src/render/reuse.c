@@ -175,15 +175,6 @@ static bool may_ask_last(zt_reuse *r, zt_hash view) {
     return still;
 }
 
-/* Whether what a picture's samples met is clear, whichever rays they shared a batch with: where
- * pixels do not take as many, that is not the same in all frames. */
-static bool is_clear(const zt_frame *f, const zt_picture *picture) {
-    bool doubtful = false;
-    for (int i = 0; !f->even && i < f->tile_count * ZT_REUSE_PARTS; i++)
-        doubtful |= picture->footprints[i].doubtful;
-    return !doubtful;
-}
-
 /* Where samples are shared out over the picture, nothing is copied; nor where it is asked how
  * many there were. */
 static bool may_keep(const zt_frame *f) {
@@ -226,7 +217,7 @@ zt_status zt_reuse_begin(zt_frame *f) {
         return ZT_OK;
     }
     bool asks_last = may_ask_last(r, f->job->view);
-    bool whole = last->whole && last->at_edges == f->at_edges && is_clear(f, last);
+    bool whole = last->whole && last->at_edges == f->at_edges;
     bool takes = asks_last || kept || r->keeps;
     if (takes) ZT_TRY(make_room(r, f));
     last->view = f->job->view;
@@ -237,7 +228,7 @@ zt_status zt_reuse_begin(zt_frame *f) {
     f->tries = asks_last && whole;
     if (f->tries) ZT_TRY(ask(f, last, ZT_TILE_LAST, &now, &r->spare));
     /* What goes from pixel to pixel must not do so from one picture to another. */
-    if (kept && (f->even || !f->copies) && is_clear(f, kept))
+    if (kept && (f->even || !f->copies))
         ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
     last->at_edges = f->at_edges;
     if (f->at_edges) ZT_TRY(open_rounds(f, last));
@@ -251,13 +242,11 @@ zt_status zt_reuse_begin(zt_frame *f) {
 }
 
 void zt_reuse_renounce(zt_frame *f) {
-    zt_picture *last = &f->job->reuse->last;
-    memset(f->job->reuse->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
-    f->copies = false;
+    zt_reuse *r = f->job->reuse;
+    f->keeps = f->copies = false;
     f->doubtful = false;
-    if (f->rounds)
-        (void)zt_rounds_open(&last->rounds, last->width, last->height,
-                             last->rounds.negative != NULL);
+    f->rounds = NULL;
+    if (!r->tireless) r->rest = 1 << REST_MAX;
     for (int i = 0; i < zt_pool_thread_count(f->pool); i++) {
         zt_render_count *count = &f->work->threads[i].count;
         count->left_out = count->rays.primary_avoided = 0;

@@ -29,9 +29,10 @@
  * numbers change nothing is looked up, and a lamp that is dimmed touches all that faces it.
  *
  * In both cases footprints grow by all samples that a tile's pixels take, frame by frame, until
- * it is touched. Which samples share a batch is then not the same as in a picture rendered by
- * itself. That makes no difference but where what is met may depend on the order in which
- * things are asked: where that occurs (a footprint is doubtful), the whole frame is rendered.
+ * it is touched. Batches are of one tile each, and of what is not copied; not the same samples
+ * as in a picture rendered by itself. That makes no difference but where what is met may depend
+ * on the order in which things are asked: where that occurs (a footprint is doubtful), the
+ * frame is rendered once more, by itself.
  *
  * A tile that was touched is rendered by quarters, so that of the next frame's only those are
  * that are touched; where it is doubtful, as a whole.
@@ -103,7 +104,7 @@ struct zt_reuse {
  * rendered is kept. ZT_EMEMORY. */
 zt_status zt_reuse_begin(zt_frame *frame);
 
-/* All is rendered, once more. */
+/* All is rendered once more, as if nothing were kept; nor is it tried soon again. */
 void zt_reuse_renounce(zt_frame *frame);
 
 /* After them, `done` or stopped. */
