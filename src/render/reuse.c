@@ -228,8 +228,7 @@ zt_status zt_reuse_begin(zt_frame *f) {
     f->tries = asks_last && whole;
     if (f->tries) ZT_TRY(ask(f, last, ZT_TILE_LAST, &now, &r->spare));
     /* What goes from pixel to pixel must not do so from one picture to another. */
-    if (kept && (f->even || !f->copies))
-        ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
+    if (kept && (f->even || !f->copies)) ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
     last->at_edges = f->at_edges;
     if (f->at_edges) ZT_TRY(open_rounds(f, last));
     zt_arena before = last->arena;
