@@ -212,7 +212,9 @@ zt_status zt_reuse_begin(zt_frame *f) {
     zt_outline now;
     zt_picture *last = &r->last;
     const zt_picture *kept = kept_of(r, f);
-    if (!may_keep(f)) {
+    bool alone = !f->even && r->alone > 0;
+    if (alone) r->alone--;
+    if (alone || !may_keep(f)) {
         last->whole = false;
         return ZT_OK;
     }
@@ -245,7 +247,7 @@ void zt_reuse_renounce(zt_frame *f) {
     f->keeps = f->copies = false;
     f->doubtful = false;
     f->rounds = NULL;
-    if (!r->tireless) r->rest = 1 << REST_MAX;
+    if (!r->tireless) r->alone = 1 << REST_MAX;
     for (int i = 0; i < zt_pool_thread_count(f->pool); i++) {
         zt_render_count *count = &f->work->threads[i].count;
         count->left_out = count->rays.primary_avoided = 0;

@@ -16,17 +16,18 @@
  * copied. Where they are taken in rounds, whether a pixel goes on depends on the ones around as
  * well.
  *
- * - Without edges all pixels take a round at the same time, and what one pixel came to is felt
- * a pixel further on with each round but the first. So from tiles that are touched pixels are
- *   decided about anew as far as there are such rounds, and to decide about these, as far
- *   again; the others' means are copied (render/refine.c). Where a budget bounds the samples of
- *   the picture, all depends on all, and nothing is copied.
- * - At edges, pixels may join late, and nobody knows how far that goes. All decisions are made
- *   again, in the whole picture; but what a pixel's first round came to, its second and so on,
- *   follows from its tile's rays, and from what the middles of the pixels around saw: it is
- * kept (render/rounds.h), and looked up where neither is touched. What was seen is told by
- * things' and lamps' numbers, and of a lamp that is hidden only where it shines: so where
- * numbers change nothing is looked up, and a lamp that is dimmed touches all that faces it.
+ * Without edges all pixels take a round at the same time, and what one pixel came to is felt a
+ * pixel further on with each round but the first. So from tiles that are touched pixels are
+ * decided about anew as far as there are such rounds, and to decide about these, as far again;
+ * the others' means are copied (render/refine.c). Where a budget bounds the samples of the
+ * picture, all depends on all, and nothing is copied.
+ *
+ * At edges, pixels may join late, and nobody knows how far that goes. All decisions are made
+ * again, in the whole picture; but what a pixel's first round came to, its second and so on,
+ * follows from its tile's rays, and from what the middles of the pixels around saw: it is kept
+ * (render/rounds.h), and looked up where neither is touched. What was seen is told by things'
+ * and lamps' numbers, and of a lamp that is hidden only where it shines: so where numbers
+ * change nothing is looked up, and a lamp that is dimmed touches all that faces it.
  *
  * In both cases footprints grow by all samples that a tile's pixels take, frame by frame, until
  * it is touched. Batches are of one tile each, and of what is not copied; not the same samples
@@ -97,6 +98,7 @@ struct zt_reuse {
     uint64_t serial;     /* of the frame */
     zt_arena spare;      /* the next outline's */
     int fruitless, rest; /* how often too little came of it; how many frames it rests yet */
+    int alone;           /* for how many frames nothing is kept yet, after zt_reuse_renounce */
     atomic_flag locks[ZT_REUSE_LOCKS]; /* of the footprints of each so manieth tile */
 };
 
