@@ -1,9 +1,11 @@
 /* Holds the tracer against the reference where numbers are extreme, and prints how exact and
  * how fast it was:
- *     extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] [--verbose] [--digest]
+ *     extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] [--verbose]
+ *              [--digest]
  * --first: the number of the first scene of each case; --scenes: how many instead of the few of
- * the short run; --rays: how many at edges and corners of closed meshes. --digest prints a checksum of all answers instead, for
- * comparisons between kernels. Exits with 1 where what must hold does not. */
+ * the short run; --rays: how many at edges and corners of closed meshes. --digest prints a
+ * checksum of all answers instead, for comparisons between kernels. Exits with 1 where what
+ * must hold does not. */
 #include <stdlib.h>
 #include <string.h>
 
