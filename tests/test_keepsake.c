@@ -171,11 +171,13 @@ static void edit_scene(reel reels[2], uint64_t key, const zt_mesh *meshes) {
                             .seed_fixed = draw_below(&d, 3) == 0};
     sampling.min = sampling.max = samples[draw_below(&d, 4)];
     zt_precision precision = draw_below(&d, 3);
+    bool transparent = draw_below(&d, 4) == 0;
     for (int i = 0; i < EDITS; i++) {
         reel *r = &reels[draw_below(&d, 2)];
         const keepsake *from = &kept[draw_below(&d, KEPT)];
         r->sampling = sampling;
         r->precision = precision;
+        r->transparent = transparent;
         if (draw_below(&d, 3)) begin_anew(r);
         r->reuse->keeps = true;
         if (from->bytes) take_out(&picture, from);
@@ -242,6 +244,79 @@ static void damage_is_found(void **state) {
     free(k.bytes);
 }
 
+/* Each truth and number is itself again. */
+static void all_of_it_is_kept(void **state) {
+    (void)state;
+    keepsake k = {0};
+    zt_picture picture = {0}, again = {0};
+    make_keepsake(&k);
+    take_out(&picture, &k);
+    zt_outline *o = &picture.outline;
+    const size_t count = (size_t)zt_tile_count(picture.width, picture.height) * ZT_REUSE_PARTS;
+    for (int n = 0; n < 8; n++) {
+        for (size_t i = 0; i < count; i++) {
+            zt_footprint *f = &picture.footprints[i];
+            f->doubtful = (n + i) & 1;
+            f->restless = (n + i) >> 1 & 1;
+            f->steps[0].leaves = (n + i) >> 2 & 1;
+        }
+        for (int32_t i = 0; i < o->thing_count; i++) {
+            zt_outline_thing *thing = &o->things[i];
+            thing->moves = (n + i) & 1;
+            thing->unbounded = (n + i) >> 1 & 1;
+            thing->round = (n + i) >> 2 & 1;
+            thing->stretch = (float)(n + i);
+        }
+        for (int32_t i = 0; i < o->lamp_count; i++) {
+            o->lamps[i].drawn = (n + i) & 1;
+            o->lamps[i].shadows = (n + i) >> 1 & 1;
+        }
+        o->ambient_moves = n & 1;
+        o->blind = n >> 1 & 1;
+        o->faint = n >> 2 & 1;
+        o->brightest = n;
+        zt_keepsake_head head = {.frame = 1};
+        zt_keepsake_write(k.bytes, &head, &picture, arithmetic);
+        zt_keepsake_seal(k.bytes);
+        take_out(&again, &k);
+        const zt_outline *other = &again.outline;
+        assert_memory_equal(again.footprints, picture.footprints,
+                            count * sizeof *again.footprints);
+        assert_memory_equal(other->things, o->things,
+                            (size_t)o->thing_count * sizeof *o->things);
+        assert_memory_equal(other->lamps, o->lamps, (size_t)o->lamp_count * sizeof *o->lamps);
+        assert_int_equal(other->ambient_moves, o->ambient_moves);
+        assert_int_equal(other->blind, o->blind);
+        assert_int_equal(other->faint, o->faint);
+        assert_true(other->brightest == o->brightest);
+    }
+    zt_picture_close(&picture);
+    zt_picture_close(&again);
+    free(k.bytes);
+}
+
+/* Bytes that nobody asked for are not passed over, even with the right checksum. */
+static void nothing_may_be_left(void **state) {
+    (void)state;
+    keepsake k = {0};
+    zt_picture picture = {0};
+    zt_keepsake_head head;
+    make_keepsake(&k);
+    for (size_t more = 0; more < 3; more++) {
+        unsigned char *bytes = calloc(1, k.size + 4 * more);
+        memcpy(bytes, k.bytes, k.size);
+        memcpy(&head, bytes, sizeof head);
+        head.size = k.size + 4 * more;
+        memcpy(bytes, &head, sizeof head);
+        zt_keepsake_seal(bytes);
+        bool read = zt_keepsake_read(&picture, bytes, head.size, arithmetic);
+        assert_int_equal(read, more == 0);
+        free(bytes);
+    }
+    zt_picture_close(&picture);
+    free(k.bytes);
+}
+
 static void ask_all(const zt_picture *picture, const zt_outline *now) {
     zt_arena arena = {0};
     zt_differences d;
@@ -300,7 +375,9 @@ int main(void) {
         cmocka_unit_test(an_edit_costs_what_it_changes),
         cmocka_unit_test(either_has_what_the_other_has_not),
         cmocka_unit_test(after_any_edit_it_is_the_same),
+        cmocka_unit_test(all_of_it_is_kept),
         cmocka_unit_test(damage_is_found),
+        cmocka_unit_test(nothing_may_be_left),
         cmocka_unit_test(hostile_bytes_break_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
