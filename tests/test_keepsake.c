@@ -114,6 +114,8 @@ static void an_edit_costs_what_it_changes(void **state) {
         }
         assert_between(show_with(&r, &k, &edited.scene), least, most);
     }
+    s.scene.camera.position.x += 0.1; /* other rays */
+    assert_int_equal(show_with(&r, &k, &s.scene), 0);
     free(k.bytes);
     reel_close(&r);
 }
