@@ -9,9 +9,10 @@ enum { LINE = 64, LARGE_PAGE = 1 << 21 };
 void *zt_pages_alloc(size_t size) {
     if (size > SIZE_MAX - LINE) return NULL;
     size_t align = size < 2 * (size_t)LARGE_PAGE ? LINE : LARGE_PAGE;
-    void *memory = aligned_alloc(align, (size + LINE - 1) / LINE * LINE);
+    void *memory;
+    if (posix_memalign(&memory, align, (size + LINE - 1) / LINE * LINE) != 0) return NULL;
 #ifdef MADV_HUGEPAGE
-    if (memory && align == LARGE_PAGE) (void)madvise(memory, size, MADV_HUGEPAGE);
+    if (align == LARGE_PAGE) (void)madvise(memory, size, MADV_HUGEPAGE);
 #endif
     return memory;
 }
