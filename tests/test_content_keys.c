@@ -86,7 +86,7 @@ static void write_file(const char *path, const char *bytes) {
 
 static void open_film(zt_animation **animation, zt_renderer **renderer, const char *description,
                       const zt_render_settings *settings) {
-    heard h;
+    static heard h; /* renderers tell of frames later */
     zt_render_settings own = *settings;
     if (own.threads == 0) own.threads = 1;
     write_file("f.yaml", description);
