@@ -156,7 +156,7 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
 /* The picture that was kept, where it is of the same rays. */
 static const zt_picture *kept_of(const zt_reuse *r, const zt_frame *f) {
     const zt_picture *kept = r->kept;
-    bool fits = kept && kept->whole && !f->at_edges && !kept->at_edges &&
+    bool fits = kept && kept->whole && !f->at_edges &&
                 zt_hash_equal(kept->view, f->job->view) && kept->width == f->image->width &&
                 kept->height == f->image->height;
     return fits ? kept : NULL;
