@@ -14,13 +14,13 @@ enum {
     ZT_ADVICE_TOLD_MAX = 100 /* of one kind */
 };
 
+/* ---- moments and scenes: advice_scene.c -----------------------------------------------------
+ */
+
 /* The moments at which a film is looked at: all frames and some between, or fewer, evenly
  * spread. */
 int64_t zt_advice_moment_count(const zt_film *film, int64_t most);
 double zt_advice_moment_s(const zt_film *film, int64_t index, int64_t count);
-
-/* ---- scenes: advice_scene.c -----------------------------------------------------------------
- */
 
 /* The scene of a moment. */
 typedef struct zt_advice_moment {
@@ -64,9 +64,10 @@ typedef struct zt_advice_name {
 zt_advice_name zt_advice_name_of(const zt_animation *animation, zt_owner owner, int32_t index);
 zt_advice_name zt_advice_name_of_object(const zt_animation *animation, int32_t object);
 
-/* ---- the advice itself: each fails as freezing does -----------------------------------------
+/* ---- the advice itself: what looks at scenes fails as freezing does -------------------------
  */
 
+void zt_advice_curves(const zt_animation *animation, zt_listener listener);
 zt_status zt_advice_camera(const zt_animation *animation, zt_listener listener);
 zt_status zt_advice_lamps(const zt_animation *animation, zt_listener listener);
 zt_status zt_advice_shapes(const zt_animation *animation, zt_listener listener);

@@ -1,9 +1,21 @@
-/* What the advice on scenes shares: going through them, where points are, and words. */
+/* What advice shares: moments, going through their scenes, where points are, and words. */
 #include <math.h>
 #include <stdio.h>
 
 #include "keyframe/advice.h"
 #include "scene/clearance.h"
+
+int64_t zt_advice_moment_count(const zt_film *film, int64_t most) {
+    int64_t count = (film->frame_count - 1) * ZT_ADVICE_MOMENTS_PER_FRAME + 1;
+    return count < most ? count : most < 1 ? 1 : most;
+}
+
+double zt_advice_moment_s(const zt_film *film, int64_t index, int64_t count) {
+    double last = (double)(film->frame_count - 1);
+    double frame = count > 1 ? last * (double)index / (double)(count - 1) : 0;
+    if (frame == rint(frame)) return zt_rate_time(film->rate, (int64_t)frame);
+    return frame * film->rate.den / film->rate.num;
+}
 
 zt_status zt_advice_each_moment(const zt_animation *animation, int32_t point_count,
                                 zt_advice_look *look, void *user, zt_listener listener) {
