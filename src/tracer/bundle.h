@@ -26,19 +26,40 @@ static inline real_bits in_order(real_bits bits) {
     return bits ^ (bits < 0 ? REAL_BITS_MAX : 0);
 }
 
-static inline void zt_range(real *low, real *high, const real *values, int count) {
-    real_bits least = REAL_BITS_MAX, greatest = -REAL_BITS_MAX;
-    for (int i = 0; i < count; i++) {
-        real_bits bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        real_bits number = in_order(bits);
-        least = number < least ? number : least;
-        greatest = number > greatest ? number : greatest;
-    }
-    least = in_order(least);
-    greatest = in_order(greatest);
+/* The least and the greatest of numbers that come along one by one. */
+typedef struct zt_ranging {
+    real_bits least, greatest;
+} zt_ranging;
+
+#define ZT_RANGING ((zt_ranging){REAL_BITS_MAX, -REAL_BITS_MAX})
+
+static inline void zt_range_add(zt_ranging *range, real value) {
+    real_bits bits;
+    memcpy(&bits, &value, sizeof bits);
+    real_bits number = in_order(bits);
+    range->least = number < range->least ? number : range->least;
+    range->greatest = number > range->greatest ? number : range->greatest;
+}
+
+static inline void zt_range_end(real *low, real *high, const zt_ranging *range) {
+    real_bits least = in_order(range->least), greatest = in_order(range->greatest);
     memcpy(low, &least, sizeof *low);
     memcpy(high, &greatest, sizeof *high);
+}
+
+static inline zt_box zt_ranges_end(const zt_ranging *x, const zt_ranging *y,
+                                   const zt_ranging *z) {
+    zt_box box;
+    zt_range_end(&box.low.x, &box.high.x, x);
+    zt_range_end(&box.low.y, &box.high.y, y);
+    zt_range_end(&box.low.z, &box.high.z, z);
+    return box;
+}
+
+static inline void zt_range(real *low, real *high, const real *values, int count) {
+    zt_ranging range = ZT_RANGING;
+    for (int i = 0; i < count; i++) zt_range_add(&range, values[i]);
+    zt_range_end(low, high, &range);
 }
 
 static inline zt_box zt_range3(const real *x, const real *y, const real *z, int count) {

@@ -11,6 +11,7 @@
 
 #define intersect    ZT_KERNEL_NAME(zt_intersect)
 #define find_points  ZT_KERNEL_NAME(zt_points_find)
+#define spread       ZT_KERNEL_NAME(zt_points_spread)
 #define begin        ZT_KERNEL_NAME(zt_work_begin)
 #define keep_hits    ZT_KERNEL_NAME(zt_work_keep_hits)
 #define light_points ZT_KERNEL_NAME(zt_work_light)
@@ -76,6 +77,24 @@ static void leave_faint(zt_work *restrict w, const zt_radiance *restrict light,
     }
 }
 
+/* Mirrors all rays at flat points, if they reflect and none may be let go: with bounds of their
+ * new directions. */
+static void mirror_flat(zt_work *restrict w) {
+    zt_batch *restrict rays = &w->rays;
+    zt_points *restrict p = &w->points;
+    const real3 n = p->normal;
+    const real reflects = p->reflects;
+    zt_ranging x = ZT_RANGING, y = ZT_RANGING, z = ZT_RANGING;
+    WIDE_LOOP for (int k = 0; k < zt_batch_padded(p->count); k++) {
+        p->weight[k] *= reflects;
+        mirror_ray(rays, k, n.x, n.y, n.z);
+        zt_range_add(&x, rays->dx[k]);
+        zt_range_add(&y, rays->dy[k]);
+        zt_range_add(&z, rays->dz[k]);
+    }
+    w->directions = zt_ranges_end(&x, &y, &z);
+}
+
 /* Makes the mirrored rays of the points that reflect the next batch. */
 static void mirror(zt_work *restrict w, const zt_radiance *light, const zt_tracer *tracer,
                    bool may_be_faint) {
@@ -86,7 +105,7 @@ static void mirror(zt_work *restrict w, const zt_radiance *light, const zt_trace
     WIDE_LOOP for (int k = 0; k < padded; k++) {
         w->wanted[k] = p->reflectivity[k] > 0;
         p->weight[k] *= p->reflectivity[k];
-        mirror_ray(w, k);
+        mirror_ray(rays, k, p->nx[k], p->ny[k], p->nz[k]);
     }
     if (may_be_faint) leave_faint(w, light, tracer->brightest);
     if (all_wanted(w, p->count)) return;
@@ -113,11 +132,26 @@ static void mirror(zt_work *restrict w, const zt_radiance *light, const zt_trace
     }
 }
 
-/* Bounds of where a batch's rays begin. */
-static zt_box origins_of(const zt_work *w, const zt_tracer *tracer) {
+static void go_on(zt_work *w, const zt_radiance *light, const zt_tracer *tracer,
+                  bool may_be_faint) {
+    const zt_points *p = &w->points;
+    zt_batch *rays = &w->rays;
+    if (p->flat && !(p->reflects > 0)) {
+        rays->count = 0;
+    } else if (p->flat && !may_be_faint) {
+        mirror_flat(w);
+    } else {
+        spread(&w->points);
+        mirror(w, light, tracer, may_be_faint);
+        w->directions = zt_range3(rays->dx, rays->dy, rays->dz, rays->count);
+    }
+}
+
+/* Says nothing of where a batch's rays begin. */
+static void forget_places(zt_points *p) {
     const real3 end = {REAL_INFINITY, REAL_INFINITY, REAL_INFINITY};
-    if (tracer->everything) return (zt_box){{-end.x, -end.y, -end.z}, end};
-    return zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
+    p->places = (zt_box){{-end.x, -end.y, -end.z}, end};
+    p->source = -1;
 }
 
 static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
@@ -129,9 +163,11 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
     if (given->wants_path) memset(light->path, 0, sizeof light->path);
     begin(w, tracer, given);
     const bool whole = given->wants_path || tracer->everything;
-    zt_box around = origins_of(w, tracer);
+    if (tracer->everything) forget_places(&w->points);
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
-        zt_bundle bundle = bundle_around(w, around, w->points.source);
+        zt_bundle bundle = {.origins = w->points.places,
+                            .directions = w->directions,
+                            .source = w->points.source};
         *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
         intersect(&w->rays, &bundle, tracer);
         if (given->wants_cover && depth == 0) deliver_cover(light, w);
@@ -140,17 +176,16 @@ static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *gi
         if (w->rays.count == 0) return;
         if (given->wants_path) begin_paths(w);
         find_points(&w->points, &w->rays, tracer);
-        if (tracer->everything) w->points.source = -1;
-        around = origins_of(w, tracer);
+        if (tracer->everything) forget_places(&w->points);
+        if (given->footprint || given->wants_path) spread(&w->points);
         if (given->footprint)
-            zt_tread_points(given->footprint, depth, &w->points, &around, tracer,
-                            given->outline);
-        light_points(w, &light->counts, tracer, &around, given, depth);
+            zt_tread_points(given->footprint, depth, &w->points, tracer, given->outline);
+        light_points(w, &light->counts, tracer, given, depth);
         deliver(light, w);
         if (given->wants_path) deliver_paths(light, w);
         int count = w->rays.count;
         if (depth < tracer->reflection_depth)
-            mirror(w, light, tracer, depth >= tracer->faint_depth && !whole);
+            go_on(w, light, tracer, depth >= tracer->faint_depth && !whole);
         else
             w->rays.count = 0;
         if (depth < tracer->asked_depth) light->counts.mirror_avoided += count - w->rays.count;

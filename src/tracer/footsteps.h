@@ -34,10 +34,9 @@ static inline void zt_tread_rays(zt_footprint *f, int32_t depth, const zt_bundle
 
 /* The points where rays ended; of smooth meshes they are lifted off their ends. */
 static inline void zt_tread_points(zt_footprint *f, int32_t depth, const zt_points *points,
-                                   const zt_box *around, const zt_tracer *tracer,
-                                   const zt_outline *outline) {
+                                   const zt_tracer *tracer, const zt_outline *outline) {
     zt_footstep *step = zt_step_after(f, depth);
-    zt_hold_reals(&step->points, around, !step->ends);
+    zt_hold_reals(&step->points, &points->places, !step->ends);
     step->ends = true;
     int count = points->source >= 0 ? 1 : points->count;
     for (int k = 0; k < count; k++) {

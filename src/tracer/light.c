@@ -7,6 +7,7 @@
 #include "tracer/work.h"
 
 #define aim       ZT_KERNEL_NAME(zt_lamp_aim)
+#define spread    ZT_KERNEL_NAME(zt_points_spread)
 #define shine_any ZT_KERNEL_NAME(zt_work_shine)
 
 /* Cuts to 0..1; what is no number becomes 0. */
@@ -31,15 +32,15 @@ static real cut(real x) {
 }
 #endif
 
-/* What a lamp gives point k where nothing is in between: added to the sums; or, where it may be
- * `hidden`, kept, with a shadow ray for it if it is any. Others look no distance, and meet
- * nothing. */
-static inline void give(zt_work *restrict w, int k, bool hidden, real r, real g, real b,
-                        zt_lamp_way way) {
+/* What a lamp gives point k, of such a color, where nothing is in between: added to the sums;
+ * or, where it may be `hidden`, kept, with a shadow ray for it if it is any. Others look no
+ * distance, and meet nothing. */
+static inline void give(zt_work *restrict w, int k, bool hidden, real3 color, real r, real g,
+                        real b, zt_lamp_way way) {
     zt_batch *restrict shadow = &w->shadow;
-    r = cut(r * w->points.color_r[k]);
-    g = cut(g * w->points.color_g[k]);
-    b = cut(b * w->points.color_b[k]);
+    r = cut(r * color.x);
+    g = cut(g * color.y);
+    b = cut(b * color.z);
     if (hidden) {
         bool wanted = r + g + b > 0;
         w->lamp.r[k] = r;
@@ -59,15 +60,18 @@ static inline void give(zt_work *restrict w, int k, bool hidden, real r, real g,
 }
 
 /* The light of a point that stands still. */
-static inline void shine(zt_work *restrict w, const zt_lamp *lamp, bool hidden) {
+static inline void shine(zt_work *restrict w, const zt_lamp *lamp, bool hidden, bool flat) {
     const zt_origins *restrict from = &w->from;
     const zt_points *restrict p = &w->points;
     const zt_lamp_pose pose = *lamp->poses;
+    const real3 normal = p->normal, color = p->color;
     int padded = zt_batch_padded(p->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
-        zt_lamp_way way = zt_point_way(&pose, from->x[k], from->y[k], from->z[k], p->nx[k],
-                                       p->ny[k], p->nz[k], 0, 0);
-        give(w, k, hidden, pose.power.x * way.fade, pose.power.y * way.fade,
+        real3 n = flat ? normal : (real3){p->nx[k], p->ny[k], p->nz[k]};
+        real3 c = flat ? color : (real3){p->color_r[k], p->color_g[k], p->color_b[k]};
+        zt_lamp_way way =
+            zt_point_way(&pose, from->x[k], from->y[k], from->z[k], n.x, n.y, n.z, 0, 0);
+        give(w, k, hidden, c, pose.power.x * way.fade, pose.power.y * way.fade,
              pose.power.z * way.fade, way);
     }
     w->shadow.count = p->count;
@@ -77,10 +81,13 @@ static inline void shine(zt_work *restrict w, const zt_lamp *lamp, bool hidden) 
 static inline void shine_from_places(zt_work *restrict w, const zt_lamp *lamp, bool hidden,
                                      const zt_rays *given, uint32_t dimension, bool straight) {
     zt_batch *restrict shadow = &w->shadow;
+    const zt_points *restrict p = &w->points;
     int padded = zt_batch_padded(w->points.count);
+    spread(&w->points);
     aim(&w->lamp, shadow, lamp, &w->points, given, dimension, straight);
     WIDE_LOOP for (int k = 0; k < padded; k++)
-        give(w, k, hidden, w->lamp.r[k], w->lamp.g[k], w->lamp.b[k],
+        give(w, k, hidden, (real3){p->color_r[k], p->color_g[k], p->color_b[k]}, w->lamp.r[k],
+             w->lamp.g[k], w->lamp.b[k],
              (zt_lamp_way){shadow->dx[k], shadow->dy[k], shadow->dz[k], shadow->t[k], 0});
     shadow->count = w->points.count;
 }
@@ -91,10 +98,11 @@ void ZT_KERNEL_NAME(zt_work_shine)(zt_work *w, const zt_tracer *tracer, int32_t 
     uint32_t dimension = (uint32_t)(ZT_DIMENSION_LAMPS + depth * tracer->lamp_count + index);
     bool plain = lamp->kind == ZT_LAMP_POINT && !lamp->moves;
     bool straight = lamp->moves && tracer->exposure->moment_count == 2;
+    const bool flat = w->points.flat;
     if (plain && hidden)
-        shine(w, lamp, true);
+        flat ? shine(w, lamp, true, true) : shine(w, lamp, true, false);
     else if (plain)
-        shine(w, lamp, false);
+        flat ? shine(w, lamp, false, true) : shine(w, lamp, false, false);
     else if (hidden)
         shine_from_places(w, lamp, true, given, dimension, straight);
     else
@@ -126,8 +134,14 @@ static void add_ambient(zt_work *restrict w, const zt_tracer *tracer) {
     const real *restrict between = w->from.between;
     const int32_t *restrict moment = w->from.moment;
     int padded = zt_batch_padded(p->count);
-    const real3 still = tracer->ambient, *moving = tracer->ambients;
-    if (!moving) WIDE_LOOP for (int k = 0; k < padded; k++) {
+    const real3 still = tracer->ambient, *moving = tracer->ambients, color = p->color;
+    if (p->flat) WIDE_LOOP for (int k = 0; k < padded; k++) {
+            w->sum_r[k] = still.x * color.x;
+            w->sum_g[k] = still.y * color.y;
+            w->sum_b[k] = still.z * color.z;
+        }
+    else if (!moving)
+        WIDE_LOOP for (int k = 0; k < padded; k++) {
             w->sum_r[k] = still.x * p->color_r[k];
             w->sum_g[k] = still.y * p->color_g[k];
             w->sum_b[k] = still.z * p->color_b[k];
@@ -146,10 +160,10 @@ static void add_ambient(zt_work *restrict w, const zt_tracer *tracer) {
  */
 
 /* One lamp's light; returns how many shadow rays that took. */
-static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt_box *around,
-                    const zt_rays *given, int32_t depth) {
+static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt_rays *given,
+                    int32_t depth) {
     const zt_lamp *lamp = &tracer->lamps[index];
-    zt_bundle bundle = zt_bundle_to(*around, lamp->bounds, w->points.source);
+    zt_bundle bundle = zt_bundle_to(w->points.places, lamp->bounds, w->points.source);
     bool hidden = lamp->shadows && ZT_KERNEL_NAME(zt_may_meet)(&bundle, tracer);
     shine_any(w, tracer, index, hidden, given, depth);
     int wanted = hidden ? count_wanted(w, w->points.count) : 0;
@@ -165,30 +179,29 @@ static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt
 }
 
 /* What of the points decides which lamps reach them. */
-static zt_reach_points bound_points(const zt_work *w, const zt_box *around,
-                                    const zt_rays *given) {
+static zt_reach_points bound_points(const zt_work *w, const zt_rays *given) {
     const zt_points *p = &w->points;
-    zt_reach_points bounds = {.places = *around,
+    zt_reach_points bounds = {.places = p->places,
                               .wants_path = given->wants_path,
                               .footprint = given->footprint,
                               .outline = given->outline};
-    bounds.normals = zt_range3(p->nx, p->ny, p->nz, p->count);
+    bounds.normals =
+        p->flat ? (zt_box){p->normal, p->normal} : zt_range3(p->nx, p->ny, p->nz, p->count);
     if (given->wants_path)
         bounds.least_color = zt_range3(p->color_r, p->color_g, p->color_b, p->count).low;
     return bounds;
 }
 
 /* The lamps that may reach the points, of all that there are. */
-static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_box *around,
-                         const zt_rays *given, int32_t depth) {
-    const zt_reach_points bounds = bound_points(w, around, given);
+static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_rays *given,
+                         int32_t depth) {
+    const zt_reach_points bounds = bound_points(w, given);
     int traced = 0;
     for (int32_t first = 0; first < tracer->lamp_count; first += ZT_BATCH) {
         uint32_t hidden;
         int count =
             ZT_KERNEL_NAME(zt_reach_list)(w->list, &hidden, &w->reach, &bounds, tracer, first);
-        for (int i = 0; i < count; i++)
-            traced += light_by(w, tracer, w->list[i], around, given, depth);
+        for (int i = 0; i < count; i++) traced += light_by(w, tracer, w->list[i], given, depth);
         if (given->wants_path && hidden)
             for (int k = 0; k < w->points.count; k++) w->hidden[k] ^= hidden;
     }
@@ -196,13 +209,13 @@ static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_box *arou
 }
 
 void ZT_KERNEL_NAME(zt_work_light)(zt_work *w, zt_ray_counts *counts, const zt_tracer *tracer,
-                                   const zt_box *around, const zt_rays *given, int32_t depth) {
+                                   const zt_rays *given, int32_t depth) {
     int traced = 0;
     add_ambient(w, tracer);
-    if (tracer->reach) traced = light_reached(w, tracer, around, given, depth);
+    if (tracer->reach) traced = light_reached(w, tracer, given, depth);
     for (int32_t i = 0; !tracer->reach && i < tracer->lamp_count; i++)
         if (tracer->lamps[i].shines || given->footprint)
-            traced += light_by(w, tracer, i, around, given, depth);
+            traced += light_by(w, tracer, i, given, depth);
     counts->shadow += traced;
     counts->shadow_avoided += (int64_t)w->points.count * tracer->lamp_count - traced;
 }

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "tracer/bundle.h"
 #include "tracer/motion_points.h"
 #include "tracer/points_meshes.h"
 #include "tracer/points_solids.h"
@@ -208,10 +209,95 @@ static void leave_surfaces(zt_points *restrict w, zt_origins *restrict from) {
     }
 }
 
+/* ---- the short way --------------------------------------------------------------------------
+ */
+
+/* The flat thing without a pattern that all rays hit from one side; or NULL. */
+static const zt_surface *find_flat(bool *away, const zt_batch *restrict rays,
+                                   const zt_tracer *tracer) {
+    const int32_t first = rays->hit[0];
+    const zt_primitive_kind kind = tracer->primitives[first].kind;
+    const zt_surface *s = &tracer->surfaces[first];
+    if (kind != ZT_PRIMITIVE_PLANE && kind != ZT_PRIMITIVE_TRIANGLE) return NULL;
+    if (tracer->everything || tracer->moves || tracer->changes || s->pattern >= 0) return NULL;
+    const real3 n = s->normal;
+    int32_t others = 0, any = 0, all = 1;
+    WIDE_LOOP for (int k = 0; k < zt_batch_padded(rays->count); k++) {
+        int32_t leaves = real_dot(n.x, n.y, n.z, rays->dx[k], rays->dy[k], rays->dz[k]) > 0;
+        others |= rays->hit[k] ^ first;
+        any |= leaves;
+        all &= leaves;
+    }
+    *away = any;
+    return others || any != all ? NULL : s;
+}
+
+/* All of zt_points_find in one go: number by number the same. */
+static void find_flat_points(zt_points *restrict w, const zt_batch *restrict rays,
+                             zt_origins *restrict from, const zt_surface *only, bool away) {
+    const zt_surface s = *only;
+    const real3 n = s.normal, c = s.center;
+    const int32_t first = rays->hit[0];
+    w->flat = true;
+    w->normal = away ? (real3){-n.x, -n.y, -n.z} : n;
+    w->color = s.color;
+    w->reflects = s.reflectivity;
+    w->source = first;
+    const real3 facing = w->normal;
+    zt_ranging x = ZT_RANGING, y = ZT_RANGING, z = ZT_RANGING;
+    WIDE_LOOP for (int k = 0; k < zt_batch_padded(w->count); k++) {
+        real t = rays->t[k];
+        real px = from->x[k] + t * rays->dx[k], py = from->y[k] + t * rays->dy[k],
+             pz = from->z[k] + t * rays->dz[k];
+        real off = real_dot(n.x, n.y, n.z, px - c.x, py - c.y, pz - c.z) - s.level;
+        px -= off * n.x;
+        py -= off * n.y;
+        pz -= off * n.z;
+        real largest = real_max(real_max(real_abs(px), real_abs(py)), real_abs(pz));
+        real margin = largest * (MARGIN_ROUNDINGS * REAL_ROUNDING);
+        px += margin * facing.x;
+        py += margin * facing.y;
+        pz += margin * facing.z;
+        from->x[k] = px;
+        from->y[k] = py;
+        from->z[k] = pz;
+        from->near[k] = largest * TIE;
+        from->source[k] = 2 * first;
+        zt_range_add(&x, px);
+        zt_range_add(&y, py);
+        zt_range_add(&z, pz);
+    }
+    w->places = zt_ranges_end(&x, &y, &z);
+}
+
+void ZT_KERNEL_NAME(zt_points_spread)(zt_points *restrict w) {
+    if (!w->flat) return;
+    const real3 normal = w->normal, color = w->color;
+    const real reflects = w->reflects;
+    const int32_t primitive = w->source;
+    WIDE_LOOP for (int k = 0; k < zt_batch_padded(w->count); k++) {
+        w->primitive[k] = primitive;
+        w->nx[k] = normal.x;
+        w->ny[k] = normal.y;
+        w->nz[k] = normal.z;
+        w->color_r[k] = color.x;
+        w->color_g[k] = color.y;
+        w->color_b[k] = color.z;
+        w->reflectivity[k] = reflects;
+    }
+}
+
 void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_tracer *tracer) {
     zt_origins *from = rays->from;
     int32_t list[ZT_BATCH];
+    bool away;
     w->count = rays->count;
+    const zt_surface *only = find_flat(&away, rays, tracer);
+    if (only) {
+        find_flat_points(w, rays, from, only, away);
+        return;
+    }
+    w->flat = false;
     go_to_ends(w, rays, from);
     find_surfaces(w, from, tracer);
     if (tracer->changes) ZT_KERNEL_NAME(zt_change_colors)(w, from, tracer);
@@ -232,4 +318,5 @@ void ZT_KERNEL_NAME(zt_points_find)(zt_points *w, zt_batch *rays, const zt_trace
     int32_t inside = 0;
     for (int k = 0; k < w->count; k++) inside |= from->source[k] & 1;
     if (inside) w->source = -1;
+    w->places = zt_range3(from->x, from->y, from->z, w->count);
 }

@@ -24,6 +24,13 @@ typedef struct zt_points {
      * other color. Set where there are solids, and patterns. */
     alignas(64) int32_t face[ZT_BATCH];
     alignas(64) int32_t cell[ZT_BATCH];
+    /* All lie on one flat thing without a pattern, and the rays came from one side of it: then
+     * its looks are here, and of the arrays only pixel and weight say something until
+     * zt_points_spread() fills the others. */
+    bool flat;
+    real3 normal, color;
+    real reflects;
+    zt_box places;  /* bounds of where they are */
     int32_t source; /* the primitive that they all lie on, none of them inside it, or -1 */
     int count;
     bool moved; /* some rays have gone, so that point k may not be that of ray k any more */
@@ -33,5 +40,8 @@ typedef struct zt_points {
  * surfaces there: sets the origins (a few roundings off the surface, on the side that the rays
  * came from, with their sources) and the points but for pixel and weight. */
 void ZT_KERNEL_NAME(zt_points_find)(zt_points *points, zt_batch *rays, const zt_tracer *tracer);
+
+/* Fills the arrays of points that may be flat. They stay so. */
+void ZT_KERNEL_NAME(zt_points_spread)(zt_points *points);
 
 #endif

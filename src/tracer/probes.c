@@ -55,10 +55,9 @@ static void tell_lamp(zt_probe *probes, const zt_work *w, const zt_lamp *lamp) {
 
 static void probe_lamps(zt_probe *probes, zt_work *w, const zt_tracer *tracer,
                         const zt_rays *given) {
-    zt_box around = zt_range3(w->from.x, w->from.y, w->from.z, w->rays.count);
     for (int32_t i = 0; i < tracer->lamp_count; i++) {
         const zt_lamp *lamp = &tracer->lamps[i];
-        zt_bundle bundle = zt_bundle_to(around, lamp->bounds, w->points.source);
+        zt_bundle bundle = zt_bundle_to(w->points.places, lamp->bounds, w->points.source);
         ZT_KERNEL_NAME(zt_work_shine)(w, tracer, i, true, given, probes->depth);
         if (lamp->shadows) ZT_KERNEL_NAME(zt_occlude)(&w->shadow, &bundle, tracer);
         tell_lamp(probes, w, lamp);
@@ -74,15 +73,16 @@ void ZT_KERNEL_NAME(zt_work_probe)(const zt_tracer *tracer, zt_probe *probes, in
         probes[i].object = probes[i].part = -1;
         probes[i].lit = 0;
     }
-    zt_bundle bundle = bundle_around(w, zt_range3(w->from.x, w->from.y, w->from.z, count), -1);
+    zt_bundle bundle = {.origins = w->points.places, .directions = w->directions, .source = -1};
     ZT_KERNEL_NAME(zt_intersect)(&w->rays, &bundle, tracer);
     ZT_KERNEL_NAME(zt_work_keep_hits)(w, tracer);
     if (w->rays.count == 0) return;
     ZT_KERNEL_NAME(zt_points_find)(&w->points, &w->rays, tracer);
+    ZT_KERNEL_NAME(zt_points_spread)(&w->points);
     tell_hits(probes, w, tracer);
     if (!probes->unlit) probe_lamps(probes, w, tracer, &given);
     for (int k = 0; k < w->points.count; k++) {
-        mirror_ray(w, k);
+        mirror_ray(&w->rays, k, w->points.nx[k], w->points.ny[k], w->points.nz[k]);
         probes[w->points.pixel[k]].mirror_direction = at(w->rays.dx, w->rays.dy, w->rays.dz, k);
     }
 }

@@ -2,6 +2,24 @@
  * width of instructions and each precision (tracer/isa.h). */
 #include "tracer/work.h"
 
+/* Repeats the first ray up to a whole group of lanes, so that what is true of all rays is true
+ * of all lanes, as their bounds are. */
+static void pad(zt_work *restrict w, int count) {
+    zt_batch *restrict rays = &w->rays;
+    zt_origins *restrict from = &w->from;
+    for (int i = count; i < zt_batch_padded(count); i++) {
+        from->x[i] = from->x[0];
+        from->y[i] = from->y[0];
+        from->z[i] = from->z[0];
+        from->near[i] = from->near[0];
+        rays->dx[i] = rays->dx[0];
+        rays->dy[i] = rays->dy[0];
+        rays->dz[i] = rays->dz[0];
+    }
+    w->points.places = zt_range3(from->x, from->y, from->z, count);
+    w->directions = zt_range3(rays->dx, rays->dy, rays->dz, count);
+}
+
 /* Makes the batch the first rays, with unit directions. */
 static void begin(zt_work *restrict w, const zt_rays *restrict given) {
     zt_batch *restrict rays = &w->rays;
@@ -10,6 +28,8 @@ static void begin(zt_work *restrict w, const zt_rays *restrict given) {
     rays->count = given->count;
     w->points.moved = false;
     int padded = zt_batch_padded(given->count);
+    zt_ranging ox = ZT_RANGING, oy = ZT_RANGING, oz = ZT_RANGING;
+    zt_ranging vx = ZT_RANGING, vy = ZT_RANGING, vz = ZT_RANGING;
     WIDE_LOOP for (int i = 0; i < padded; i++) {
         real x = (real)given->ox[i], y = (real)given->oy[i], z = (real)given->oz[i];
         real dx = (real)given->dx[i], dy = (real)given->dy[i], dz = (real)given->dz[i];
@@ -19,12 +39,24 @@ static void begin(zt_work *restrict w, const zt_rays *restrict given) {
         from->z[i] = z;
         from->near[i] = real_max(real_max(real_abs(x), real_abs(y)), real_abs(z)) * TIE;
         from->source[i] = -1;
-        rays->dx[i] = dx * unit;
-        rays->dy[i] = dy * unit;
-        rays->dz[i] = dz * unit;
+        dx *= unit;
+        dy *= unit;
+        dz *= unit;
+        rays->dx[i] = dx;
+        rays->dy[i] = dy;
+        rays->dz[i] = dz;
         w->points.pixel[i] = i;
         w->points.weight[i] = 1;
+        zt_range_add(&ox, x);
+        zt_range_add(&oy, y);
+        zt_range_add(&oz, z);
+        zt_range_add(&vx, dx);
+        zt_range_add(&vy, dy);
+        zt_range_add(&vz, dz);
     }
+    w->points.places = zt_ranges_end(&ox, &oy, &oz);
+    w->directions = zt_ranges_end(&vx, &vy, &vz);
+    if (padded > given->count) pad(w, given->count);
 }
 
 /* When each ray is: on its way from which moment to the next, and how far. */

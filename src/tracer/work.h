@@ -14,6 +14,7 @@
 typedef struct zt_work {
     zt_origins from; /* of the rays, and then of the shadow rays as well */
     zt_batch rays, shadow;
+    zt_box directions; /* bounds of the rays' directions */
     zt_points points;
     /* Light at the points: of all lamps so far, and of one lamp. */
     alignas(64) real sum_r[ZT_BATCH];
@@ -30,7 +31,8 @@ typedef struct zt_work {
  * --------------------------------------------------------------------
  */
 
-/* Makes the batch the first rays, with unit directions. */
+/* Makes the batch the first rays, with unit directions; `places` of the points are bounds of
+ * where these begin. */
 void ZT_KERNEL_NAME(zt_work_begin)(zt_work *work, const zt_tracer *tracer,
                                    const zt_rays *given);
 
@@ -76,11 +78,8 @@ static inline void move_moments(zt_origins *restrict from, const int32_t *restri
     }
 }
 
-/* Turns ray k, which ended at point k, to its mirrored direction. */
-static inline void mirror_ray(zt_work *restrict w, int k) {
-    zt_batch *restrict rays = &w->rays;
-    const zt_points *restrict p = &w->points;
-    real nx = p->nx[k], ny = p->ny[k], nz = p->nz[k];
+/* Turns ray k, which ended where such a normal is, to its mirrored direction. */
+static inline void mirror_ray(zt_batch *rays, int k, real nx, real ny, real nz) {
     real twice = -2 * real_dot(nx, ny, nz, rays->dx[k], rays->dy[k], rays->dz[k]);
     real dx = rays->dx[k] + twice * nx, dy = rays->dy[k] + twice * ny,
          dz = rays->dz[k] + twice * nz;
@@ -89,13 +88,6 @@ static inline void mirror_ray(zt_work *restrict w, int k) {
     rays->dx[k] = dx * unit;
     rays->dy[k] = dy * unit;
     rays->dz[k] = dz * unit;
-}
-
-static inline zt_bundle bundle_around(const zt_work *w, zt_box origins, int32_t source) {
-    const zt_batch *r = &w->rays;
-    return (zt_bundle){.origins = origins,
-                       .directions = zt_range3(r->dx, r->dy, r->dz, r->count),
-                       .source = source};
 }
 
 /* ---- light (tracer/light.c)
@@ -107,10 +99,10 @@ static inline zt_bundle bundle_around(const zt_work *w, zt_box origins, int32_t 
 void ZT_KERNEL_NAME(zt_work_shine)(zt_work *work, const zt_tracer *tracer, int32_t index,
                                    bool hidden, const zt_rays *given, int32_t depth);
 
-/* Sums up the light at the points, whose bounds are `around`. */
+/* Sums up the light at the points. */
 void ZT_KERNEL_NAME(zt_work_light)(zt_work *work, zt_ray_counts *counts,
-                                   const zt_tracer *tracer, const zt_box *around,
-                                   const zt_rays *given, int32_t depth);
+                                   const zt_tracer *tracer, const zt_rays *given,
+                                   int32_t depth);
 
 /* ---- probes (tracer/probes.c)
  * ----------------------------------------------------------------
