@@ -52,7 +52,7 @@ set(doors
     "pthread.h|base/pool.c"
     "xxh|base/hash.c"
     "OpenImageIO/|image/file[a-z_]*.(cpp|h)"
-    "lua|keyframe/expression.c"
+    "lua|keyframe/expression(_state)?.[ch]"
     "yaml.h|description/document.c"
     "embree|tracer/embree.c"
     "immintrin.h|tracer/look.c"
