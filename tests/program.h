@@ -51,6 +51,9 @@ static inline void read_text(char text[TEXT_MAX], const char *path) {
     fclose(file);
 }
 
+/* Another one may be tested for a while. */
+static const char *tested_program = ZT_TEST_PROGRAM;
+
 /* Starts the program with signals as a shell at a terminal leaves them. */
 static inline pid_t start(const posix_spawn_file_actions_t *actions, const char *arguments) {
     char copy[512], *argv[ARGUMENTS_MAX] = {(char *)"zoetrope"};
@@ -75,8 +78,8 @@ static inline pid_t start(const posix_spawn_file_actions_t *actions, const char 
     sigaddset(&defaults, SIGTERM);
     posix_spawnattr_setsigdefault(&attributes, &defaults);
     pid_t pid;
-    assert_int_equal(
-        posix_spawn(&pid, ZT_TEST_PROGRAM, actions, &attributes, argv, environment), 0);
+    assert_int_equal(posix_spawn(&pid, tested_program, actions, &attributes, argv, environment),
+                     0);
     posix_spawnattr_destroy(&attributes);
     return pid;
 }

@@ -26,7 +26,8 @@ static zt_output *open_output(const char *target, const zt_output_format *its_fo
 
 static zt_outway *open_way(zt_output *output, int thread_count) {
     zt_outway *way;
-    assert_int_equal(zt_outway_open(&way, output, WIDTH, HEIGHT, 0, thread_count), ZT_OK);
+    assert_int_equal(zt_outway_open(&way, WIDTH, HEIGHT, 0, thread_count), ZT_OK);
+    zt_outway_lead(way, output);
     return way;
 }
 
@@ -190,7 +191,8 @@ static void channels(void **state) {
     zt_output *output = open_output("channels.hash", &format, &h);
     zt_outway *way;
     unsigned aovs = ZT_AOV_Z | ZT_AOV_N;
-    assert_int_equal(zt_outway_open(&way, output, WIDTH, HEIGHT, aovs, 1), ZT_OK);
+    assert_int_equal(zt_outway_open(&way, WIDTH, HEIGHT, aovs, 1), ZT_OK);
+    zt_outway_lead(way, output);
     zt_image *image;
     assert_int_equal(zt_outway_lend(&image, way), ZT_OK);
     assert_non_null(zt_image_channel(image, "Z"));
@@ -199,7 +201,7 @@ static void channels(void **state) {
     zt_outway_release(way, image);
     assert_int_equal(zt_outway_close(&way), ZT_OK);
     assert_int_equal(zt_outway_close(&way), ZT_OK);
-    assert_int_equal(zt_outway_open(&way, output, WIDTH, HEIGHT, 0, 0), ZT_EARGUMENT);
+    assert_int_equal(zt_outway_open(&way, WIDTH, HEIGHT, 0, 0), ZT_EARGUMENT);
     assert_null(way);
     assert_int_equal(zt_output_close(&output), ZT_OK);
 }

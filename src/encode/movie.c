@@ -55,6 +55,7 @@ static const char *const endings[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", "
 static const char *const options[] = {
     "codec", "crf", "bitrate", "preset", "pixel-format", "encoder-option", NULL};
 const zt_sink zt_sink_movie = {.what = "a movie",
+                               .module = "video",
                                .endings = endings,
                                .options = options,
                                .open = open_movie,

@@ -31,6 +31,11 @@ static const zt_sink *sink_of(const char *target) {
     return NULL;
 }
 
+const char *zt_output_module(const char *target) {
+    const zt_sink *sink = sink_of(target);
+    return sink ? sink->module : NULL;
+}
+
 static void append(char list[LIST_MAX], const char *separator, const char *text) {
     size_t length = strlen(list);
     snprintf(list + length, LIST_MAX - length, "%s%s", separator, text);

@@ -1,4 +1,5 @@
-/* An output whose images are made by several threads: zt_output_write() in its two steps. */
+/* An output whose images are made by several threads: zt_output_write() in its two steps; and
+ * what opening one takes. */
 #ifndef ZT_ENCODE_OUTPUT_H
 #define ZT_ENCODE_OUTPUT_H
 
@@ -13,5 +14,8 @@ zt_status zt_output_put(zt_output *output, void *made, int64_t frame);
 
 /* Frees what was made and will not be written. */
 void zt_output_drop(zt_output *output, void *made);
+
+/* The module that opening an output for `target` loads (base/module.h), or NULL. */
+const char *zt_output_module(const char *target);
 
 #endif

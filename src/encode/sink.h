@@ -9,6 +9,7 @@
 
 typedef struct zt_sink {
     const char *what;           /* for messages: "a movie" */
+    const char *module;         /* that opening needs; NULL: none */
     const char *const *endings; /* that it accepts, each with its dot; NULL after the last */
     const char *const *options; /* that it knows, by name; NULL after the last */
     /* Makes *state; tells why not. Everything that can be refused is refused here; but that it

@@ -338,6 +338,7 @@ static zt_status write_still(void *state, void *made, int64_t frame) {
 }
 
 const zt_sink zt_sink_stills = {.what = "images",
+                                .module = "image_file",
                                 .endings = zt_image_file_endings,
                                 .options = zt_image_file_options,
                                 .open = open_stills,

@@ -9,50 +9,19 @@
 #include "base/diag.h"
 #include "base/text.h"
 #include "image/file.h"
-#include "sequence/again.h"
-#include "sequence/hold.h"
 #include "sequence/keepsakes.h"
-#include "sequence/manifest.h"
-#include "sequence/outway.h"
+#include "sequence/making.h"
+#include "sequence/opening.h"
 #include "sequence/pacing.h"
-#include "sequence/renderer.h"
-#include "sequence/settings.h"
 #include "sequence/split.h"
-#include "sequence/sums.h"
 #include "sequence/verify.h"
-
-/* A film under way. */
-typedef struct making {
-    zt_renderer *renderer;
-    const zt_film_order *order;
-    const zt_watcher *watcher;
-    zt_film_result *result;
-    zt_frames frames;         /* in the order in which they come */
-    zt_hash *keys;            /* likewise */
-    bool *wanted;             /* likewise: those that are not there */
-    zt_manifest_frame *made;  /* as they were rendered, by rising number */
-    zt_output_option *wishes; /* the order's, but for what is not for these frames */
-    bool still;               /* images of their own, not a file for all */
-    bool remembers;           /* else it is made anew */
-    bool planned;   /* keys are known before the first frame; else each when it is its turn */
-    bool timed;     /* a budget decides the samples, and with them the keys, later */
-    zt_frames rest; /* of those, what is left to be rendered */
-    zt_hold hold;
-    zt_notes notes;
-    zt_output *output;
-    zt_outway *way;
-    zt_sums *sums;
-    zt_again *again; /* NULL: no two frames are known to be equal */
-    zt_image *last;  /* that was lent and filled; NULL: none */
-    zt_settings_texts settings;
-} making;
 
 static bool ends_with_any(const char *target, const char *const *endings) {
     while (*endings && !zt_text_ends_with(target, *endings, true)) endings++;
     return *endings;
 }
 
-static zt_status ask_to_go_on(const making *m) {
+static zt_status ask_to_go_on(const zt_making *m) {
     const zt_watcher *w = m->watcher;
     return w && w->stopped && w->stopped(w->user) ? ZT_ESTOPPED : ZT_OK;
 }
@@ -60,132 +29,34 @@ static zt_status ask_to_go_on(const making *m) {
 /* ---- what is noted --------------------------------------------------------------------------
  */
 
-static int by_frame(const void *a, const void *b) {
-    const zt_manifest_frame *one = a, *other = b;
-    return (one->frame > other->frame) - (one->frame < other->frame);
-}
-
-static zt_manifest_frame *made_of(const making *m, int64_t frame) {
-    const zt_manifest_frame wanted = {.frame = frame};
-    return bsearch(&wanted, m->made, (size_t)m->frames.count, sizeof wanted, by_frame);
-}
-
 /* Something was completed: called by the output, in turn. */
 static zt_status note_record(void *user, const zt_output_record *record) {
-    making *m = user;
+    zt_making *m = user;
     zt_manifest_line line = {.kind = ZT_LINE_PIECE, .record = *record};
     if (record->kind == ZT_RECORD_IMAGE) {
         const char *slash = record->file ? strrchr(record->file, '/') : NULL;
         if (slash) line.record.file = slash + 1;
         line.kind = ZT_LINE_FRAME;
-        line.frame = *made_of(m, record->first);
+        line.frame = *zt_making_of(m, record->first);
     }
     return zt_notes_add(&m->notes, &line);
 }
 
 /* An image goes out, by any thread. Of one of its own the output tells when it is complete. */
 static zt_status note_image(void *user, const zt_image *image) {
-    making *m = user;
+    zt_making *m = user;
     if (!m->remembers && !m->timed) return ZT_OK;
-    zt_manifest_frame *made = made_of(m, image->info.frame);
+    zt_manifest_frame *made = zt_making_of(m, image->info.frame);
     ZT_TRY(zt_sums_of(&made->pixels, m->sums, image));
     if (m->still && m->remembers) return ZT_OK;
     return zt_notes_add(&m->notes, &(zt_manifest_line){.kind = ZT_LINE_FRAME, .frame = *made});
-}
-
-/* ---- rendering ------------------------------------------------------------------------------
- */
-
-static zt_status render_image(making *m, int64_t frame, zt_hash key) {
-    zt_renderer *r = m->renderer;
-    zt_manifest_frame *made = made_of(m, frame);
-    zt_sampling sampling;
-    ZT_TRY(zt_settings_of_frame(&m->settings, r, m->order, frame));
-    ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
-    ZT_TRY(zt_renderer_frame(r, frame, m->last, m->watcher));
-    m->last->info =
-        (zt_image_info){.known = true,
-                        .frame = frame,
-                        .rate = r->format.rate,
-                        .key = key,
-                        .render_s = r->cost.render_s,
-                        .seed = r->sampling.seed,
-                        .title = m->order->title,
-                        .description = m->order->description,
-                        .view = r->format.color.wished ? "color" : zt_view_name(r->format.view),
-                        .settings = m->settings.text};
-    memcpy(m->last->info.world_to_camera, r->world_to_camera, sizeof r->world_to_camera);
-    memcpy(m->last->info.world_to_ndc, r->world_to_ndc, sizeof r->world_to_ndc);
-    made->key = key;
-    made->render_s = r->cost.freeze_s + r->cost.prepare_s + r->cost.render_s;
-    if (m->timed) {
-        made->min = sampling.min;
-        made->max = sampling.max;
-        made->error = sampling.error;
-        made->mean_max = sampling.mean_max;
-        made->budget = m->order->budget;
-    }
-    m->result->rendered++;
-    zt_keepsakes_take(r->keepsakes, frame, key);
-    return ZT_OK;
-}
-
-/* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */
-static zt_status make_image(making *m, int64_t position) {
-    int64_t frame = m->frames.numbers[position];
-    zt_hash *key = &m->keys[position];
-    if (!m->planned) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
-    bool equal = m->last && !m->timed && zt_hash_equal(m->last->info.key, *key);
-    const zt_image *kept = m->again && !equal ? zt_again_find(m->again, position) : NULL;
-    if (!equal) {
-        if (m->last) zt_outway_release(m->way, m->last);
-        m->last = NULL;
-        ZT_TRY(zt_outway_lend(&m->last, m->way));
-    }
-    if (!equal && !kept) return render_image(m, frame, *key);
-    if (kept) zt_again_copy(m->last, kept);
-    zt_manifest_frame *made = made_of(m, frame);
-    made->key = *key;
-    made->render_s = made_of(m, m->last->info.frame)->render_s;
-    m->result->held++;
-    return ZT_OK;
-}
-
-static zt_status make_and_send(making *m, int64_t position) {
-    ZT_TRY(make_image(m, position));
-    zt_image_info info = m->last->info;
-    info.frame = m->frames.numbers[position];
-    ZT_TRY(zt_outway_send(m->way, m->last, &info));
-    return m->again ? zt_again_keep(m->again, position, m->last) : ZT_OK;
-}
-
-static zt_status make_all(making *m) {
-    for (int64_t i = 0; i < m->frames.count; i++) {
-        if (m->wanted[i]) ZT_TRY(make_and_send(m, i));
-        if (m->watcher && m->watcher->progress)
-            m->watcher->progress(m->watcher->user, i + 1, m->frames.count,
-                                 m->frames.numbers[i]);
-    }
-    return ZT_OK;
-}
-
-static zt_status render_wanted(making *m) {
-    const zt_renderer *r = m->renderer;
-    if (m->planned) ZT_TRY(zt_again_open(&m->again, m->keys, m->wanted, m->frames.count));
-    ZT_TRY(zt_outway_open(&m->way, m->output, r->format.width, r->format.height, r->aovs,
-                          zt_pool_thread_count(r->pool)));
-    zt_outway_show(m->way, note_image, m);
-    zt_status status = make_all(m);
-    if (m->last) zt_outway_release(m->way, m->last);
-    zt_status written = zt_outway_close(&m->way); /* waits for what is still being written */
-    return written != ZT_OK ? written : status;
 }
 
 /* ---- with a budget --------------------------------------------------------------------------
  */
 
 /* Whether a frame has what this budget chose for it, by this way of sampling. */
-static bool is_of_budget(const making *m, const zt_manifest_frame *f) {
+static bool is_of_budget(const zt_making *m, const zt_manifest_frame *f) {
     const zt_sampling *s = &m->renderer->sampling;
     const zt_budget *b = &m->order->budget;
     bool adaptive = s->min != s->max;
@@ -195,7 +66,7 @@ static bool is_of_budget(const making *m, const zt_manifest_frame *f) {
 }
 
 /* Finds out how many samples there is time for. */
-static zt_status take_budget(making *m) {
+static zt_status take_budget(zt_making *m) {
     zt_budget left = m->order->budget;
     m->rest.numbers = calloc((size_t)m->frames.count, sizeof *m->rest.numbers);
     if (!m->rest.numbers) return ZT_EMEMORY;
@@ -216,7 +87,7 @@ static zt_status take_budget(making *m) {
  */
 
 /* With a budget, those of frames that were rendered with it. */
-static zt_status find_keys(making *m) {
+static zt_status find_keys(zt_making *m) {
     zt_renderer *r = m->renderer;
     const zt_manifest *followed = r->followed;
     zt_status status = ZT_OK;
@@ -234,7 +105,7 @@ static zt_status find_keys(making *m) {
 }
 
 /* Asks the output what it lacks. */
-static zt_status find_wanted(making *m) {
+static zt_status find_wanted(zt_making *m) {
     for (int64_t i = 0; i < m->frames.count; i++) {
         ZT_TRY(ask_to_go_on(m));
         m->wanted[i] = zt_output_wants(m->output, i);
@@ -243,7 +114,7 @@ static zt_status find_wanted(making *m) {
     return ZT_OK;
 }
 
-static zt_status make_film(making *m) {
+static zt_status make_film(zt_making *m) {
     ZT_TRY(find_wanted(m));
     const zt_verify_job job = {m->frames.numbers, m->keys,        m->wanted,
                                m->frames.count,   m->notes.known, m->order->target};
@@ -251,11 +122,11 @@ static zt_status make_film(making *m) {
         ZT_TRY(zt_verify_frames(&m->result->verified, &job, m->order->verify, m->renderer,
                                 m->watcher));
     if (m->timed) ZT_TRY(take_budget(m));
-    return render_wanted(m);
+    return zt_making_all(m);
 }
 
 /* A film's sound is that from its first frame on. */
-static zt_status choose_wishes(making *m) {
+static zt_status choose_wishes(zt_making *m) {
     const zt_output_option *wish = m->order->options;
     size_t count = 0;
     while (wish && wish[count].name) count++;
@@ -271,7 +142,30 @@ static zt_status choose_wishes(making *m) {
     return ZT_OK;
 }
 
-static zt_status make_into_output(making *m) {
+/* Opens the output, and meanwhile renders the first frame, if nothing is known of earlier runs:
+ * then it is wanted, but for what an encoder may have kept of one that was killed early. */
+static zt_status open_and_begin(zt_making *m, const zt_output_format *format) {
+    zt_opening opening = {.target = m->order->target,
+                          .format = format,
+                          .options = m->wishes,
+                          .listener = m->renderer->listener,
+                          .watcher = m->watcher};
+    const zt_manifest *known = m->notes.known;
+    zt_opening_begin(&opening);
+    bool begins = zt_opening_takes(&opening) && !m->timed &&
+                  (m->order->overwrites || !known || known->record_count == 0);
+    zt_status begun = ZT_OK;
+    if (begins) {
+        const zt_watcher meanwhile = zt_opening_watcher(&opening);
+        m->watcher = &meanwhile;
+        begun = zt_making_begin(m);
+        m->watcher = opening.watcher;
+    }
+    zt_status opened = zt_opening_end(&m->output, &opening);
+    return opened != ZT_OK ? opened : begun;
+}
+
+static zt_status make_into_output(zt_making *m) {
     zt_output_format format = m->renderer->format;
     const zt_output_plan plan = {.frames = m->frames.numbers,
                                  .keys = m->keys,
@@ -291,14 +185,15 @@ static zt_status make_into_output(making *m) {
     if (m->planned && m->still)
         ZT_TRY(zt_again_group(m->frames.numbers, m->keys, m->frames.count));
     ZT_TRY(choose_wishes(m));
-    ZT_TRY(zt_output_open(&m->output, m->order->target, &format, m->wishes,
-                          m->renderer->listener));
-    zt_status status = make_film(m);
-    zt_status closed = zt_output_close(&m->output);
+    ZT_TRY(zt_making_open(m, note_image));
+    zt_status status = open_and_begin(m, &format);
+    if (status == ZT_OK) status = make_film(m);
+    zt_status written = zt_making_close(m), closed = zt_output_close(&m->output);
+    if (written != ZT_OK) status = written;
     return closed != ZT_OK ? closed : status;
 }
 
-static zt_status take_part(making *m) {
+static zt_status take_part(zt_making *m) {
     const zt_film_order *o = m->order;
     if (o->part_count > 0)
         ZT_TRY(zt_split_take(&m->frames, o->part, o->part_count,
@@ -310,7 +205,7 @@ static zt_status take_part(making *m) {
     return ZT_OK;
 }
 
-static zt_status push_lists(making *m) {
+static zt_status push_lists(zt_making *m) {
     size_t count = (size_t)m->frames.count;
     m->keys = calloc(count, sizeof *m->keys);
     m->wanted = calloc(count, sizeof *m->wanted);
@@ -318,11 +213,11 @@ static zt_status push_lists(making *m) {
     if (!m->keys || !m->wanted || !m->made) return ZT_EMEMORY;
     for (size_t i = 0; i < count; i++)
         m->made[i] = (zt_manifest_frame){.frame = m->frames.numbers[i], .render_s = -1};
-    qsort(m->made, count, sizeof *m->made, by_frame);
+    qsort(m->made, count, sizeof *m->made, zt_making_by_frame);
     return zt_sums_open(&m->sums);
 }
 
-static zt_status open_notes(making *m) {
+static zt_status open_notes(zt_making *m) {
     const zt_renderer *r = m->renderer;
     char *written = zt_notes_wishes(m->order->options);
     if (!written) return ZT_EMEMORY;
@@ -339,7 +234,7 @@ static zt_status open_notes(making *m) {
     return status;
 }
 
-static zt_status make(making *m) {
+static zt_status make(zt_making *m) {
     const zt_film_order *o = m->order;
     m->frames.count = o->frames->count;
     m->frames.numbers = calloc((size_t)m->frames.count, sizeof *m->frames.numbers);
@@ -370,7 +265,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     static const char *const made_anew[] = {".hash", NULL};
     *result = (zt_film_result){0};
     if (order->frames->count < 1) return ZT_EARGUMENT;
-    making m = {.renderer = r, .order = order, .watcher = watcher, .result = result};
+    zt_making m = {.renderer = r, .order = order, .watcher = watcher, .result = result};
     m.still = ends_with_any(order->target, zt_image_file_endings);
     m.remembers = !order->forgets && !ends_with_any(order->target, made_anew);
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;

@@ -318,7 +318,7 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     const zt_frame_cost *cost = &r->cost;
     const zt_picture *last = &r->reuse->last;
     const entry *old = find(k, frame);
-    double render_s = cost->freeze_s + cost->prepare_s + cost->render_s;
+    double render_s = cost->own_s;
     r->reuse->kept = NULL;
     if (k->offered) {
         render_s = fmax(render_s, old->render_s);
@@ -327,7 +327,7 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
         r->stats.found_copied += cost->tiles_copied;
     }
     k->expected_s = render_s;
-    k->rendered_s += cost->render_s;
+    k->rendered_s += cost->own_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
     if (fresh || !r->reuse->keeps || !last->whole || last->at_edges) return;
     if (render_s < least_s(k)) return;

@@ -160,14 +160,13 @@ static bool has_locks(zt_outway *way) {
     return false;
 }
 
-zt_status zt_outway_open(zt_outway **out, zt_output *output, int width, int height,
-                         unsigned aovs, int thread_count) {
+zt_status zt_outway_open(zt_outway **out, int width, int height, unsigned aovs,
+                         int thread_count) {
     *out = NULL;
     if (thread_count < 1) return ZT_EARGUMENT;
     zt_outway *way = calloc(1, sizeof *way);
     if (!way) return ZT_EMEMORY;
-    *way = (zt_outway){.output = output,
-                       .width = width,
+    *way = (zt_outway){.width = width,
                        .height = height,
                        .aovs = aovs,
                        .capacity = thread_count + 2,
@@ -183,6 +182,8 @@ zt_status zt_outway_open(zt_outway **out, zt_output *output, int width, int heig
         zt_outway_close(&way);
     return status;
 }
+
+void zt_outway_lead(zt_outway *way, zt_output *output) { way->output = output; }
 
 void zt_outway_show(zt_outway *way, zt_status (*look)(void *user, const zt_image *image),
                     void *user) {

@@ -8,11 +8,15 @@
 
 typedef struct zt_outway zt_outway;
 
-/* Opens a way for images of a size with the channels of `aovs` (zt_aov) to an output, which
- * nobody else uses until it is closed. `thread_count`, at least 1, make images ready; one of
- * them at a time writes, in the order in which images were sent. ZT_EMEMORY. */
-zt_status zt_outway_open(zt_outway **way, zt_output *output, int width, int height,
-                         unsigned aovs, int thread_count);
+/* Opens a way for images of a size with the channels of `aovs` (zt_aov). `thread_count`, at
+ * least 1, make images ready; one of them at a time writes, in the order in which images were
+ * sent. ZT_EMEMORY. */
+zt_status zt_outway_open(zt_outway **way, int width, int height, unsigned aovs,
+                         int thread_count);
+
+/* Says where it leads to, before the first image is sent: an output, which nobody else uses
+ * until the way is closed. */
+void zt_outway_lead(zt_outway *way, zt_output *output);
 
 /* Has `look` see each image that will be sent, with what is said of it, from any thread, before
  * it is made ready; where it fails, so does the image. Before the first one is sent. */

@@ -8,6 +8,7 @@
 #include "base/diag.h"
 #include "base/hash.h"
 #include "base/module.h"
+#include "base/usage.h"
 #include "keyframe/animation.h"
 #include "render/guides.h"
 #include "sequence/keepsakes.h"
@@ -197,6 +198,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
         return ZT_EARGUMENT;
     zt_taking t;
     zt_render_count count;
+    const double own_s = zt_usage_own_s();
     ZT_TRY(zt_renderer_prepare(&t, r, frame));
     zt_renderer_doubt(r, &t.ready, &t.exposure, &t.division, frame);
     ZT_TRY(find_matrices(r, &t, frame));
@@ -210,6 +212,7 @@ static zt_status take(zt_renderer *r, int64_t frame, zt_image *image, zt_reuse *
     ZT_TRY(zt_guides_render(image, &t.job, &t.exposure, &t.passage, r->work, r->pool));
     ZT_TRY(zt_meshes_status(r->meshes));
     r->cost.render_s = zt_clock_s() - begun_s;
+    r->cost.own_s = zt_usage_own_s() - own_s;
     r->cost.left_out_count = count.left_out;
     r->cost.rays = count.rays;
     r->cost.tiles = count.tiles;

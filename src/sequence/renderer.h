@@ -15,6 +15,7 @@
 /* What a frame took: seconds of wall time for each stage, and how much there was to do. */
 typedef struct zt_frame_cost {
     double freeze_s, prepare_s, render_s;
+    double own_s; /* that the calling thread computed in all of them (base/usage.h) */
     zt_ray_counts rays;
     int64_t left_out_count; /* samples that were not finite */
     int64_t tiles, tiles_copied;
