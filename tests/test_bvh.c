@@ -531,7 +531,7 @@ static void shoot_closed(closed_mesh mesh, double shift, int64_t rays) {
     zt_clusters clusters;
     zt_bvh *bvh = NULL;
     assert_int_equal(
-        zt_clusters_build(&clusters, mesh.positions, mesh.triangles, mesh.triangle_count, 1),
+        zt_clusters_build(&clusters, mesh.positions, mesh.triangles, mesh.triangle_count, NULL),
         ZT_OK);
     assert_int_equal(zt_bvh_of_boxes(&bvh, builder, clusters.boxes, clusters.count), ZT_OK);
     s.clusters = &clusters;
@@ -576,7 +576,7 @@ static void triangles_are_met_by_index(void **state) {
     m.triangle_count = 2 * count;
     zt_clusters clusters;
     assert_int_equal(
-        zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count, 1), ZT_OK);
+        zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count, NULL), ZT_OK);
     s.clusters = all.clusters = &clusters;
     const int threads[] = {1, 2, 4};
     for (int k = 0; k < 3; k++) {
@@ -613,7 +613,7 @@ static void clusters_hold_each_triangle(void **state) {
     for (int32_t k = 0; k < m.triangle_count / 2; k++) /* half of them in one place */
         memcpy(m.triangles + 3 * k, m.triangles, 3 * sizeof(uint32_t));
     zt_clusters c;
-    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, m.triangle_count, 1),
+    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, m.triangle_count, NULL),
                      ZT_OK);
     int32_t *cluster_of = malloc((size_t)m.triangle_count * sizeof *cluster_of);
     memset(cluster_of, 0xff, (size_t)m.triangle_count * sizeof *cluster_of);
@@ -635,7 +635,7 @@ static void clusters_hold_each_triangle(void **state) {
     assert_true(c.count < m.triangle_count / 5);
     free(cluster_of);
     zt_clusters_free(&c);
-    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, 0, 1), ZT_OK);
+    assert_int_equal(zt_clusters_build(&c, m.positions, m.triangles, 0, NULL), ZT_OK);
     assert_int_equal(c.count, 0);
     zt_clusters_free(&c);
     free_mesh(&m);
@@ -646,10 +646,13 @@ static void clusters_are_the_same_for_any_threads(void **state) {
     (void)state;
     closed_mesh m = torus(200, 101);
     zt_clusters alone, together;
-    assert_int_equal(zt_clusters_build(&alone, m.positions, m.triangles, m.triangle_count, 1),
-                     ZT_OK);
+    zt_pool *pool;
+    assert_int_equal(zt_pool_open(&pool, 3), ZT_OK);
     assert_int_equal(
-        zt_clusters_build(&together, m.positions, m.triangles, m.triangle_count, 3), ZT_OK);
+        zt_clusters_build(&alone, m.positions, m.triangles, m.triangle_count, NULL), ZT_OK);
+    assert_int_equal(
+        zt_clusters_build(&together, m.positions, m.triangles, m.triangle_count, pool), ZT_OK);
+    zt_pool_close(&pool);
     assert_int_equal(alone.count, together.count);
     size_t count = (size_t)alone.count;
     assert_memory_equal(alone.clusters, together.clusters, count * sizeof *alone.clusters);

@@ -9,8 +9,8 @@
 #include "base/diag.h"
 #include "base/text.h"
 #include "image/file.h"
+#include "sequence/filming.h"
 #include "sequence/keepsakes.h"
-#include "sequence/making.h"
 #include "sequence/opening.h"
 #include "sequence/pacing.h"
 #include "sequence/split.h"
@@ -21,7 +21,7 @@ static bool ends_with_any(const char *target, const char *const *endings) {
     return *endings;
 }
 
-static zt_status ask_to_go_on(const zt_making *m) {
+static zt_status ask_to_go_on(const zt_filming *m) {
     const zt_watcher *w = m->watcher;
     return w && w->stopped && w->stopped(w->user) ? ZT_ESTOPPED : ZT_OK;
 }
@@ -31,22 +31,22 @@ static zt_status ask_to_go_on(const zt_making *m) {
 
 /* Something was completed: called by the output, in turn. */
 static zt_status note_record(void *user, const zt_output_record *record) {
-    zt_making *m = user;
+    zt_filming *m = user;
     zt_manifest_line line = {.kind = ZT_LINE_PIECE, .record = *record};
     if (record->kind == ZT_RECORD_IMAGE) {
         const char *slash = record->file ? strrchr(record->file, '/') : NULL;
         if (slash) line.record.file = slash + 1;
         line.kind = ZT_LINE_FRAME;
-        line.frame = *zt_making_of(m, record->first);
+        line.frame = *zt_filming_of(m, record->first);
     }
     return zt_notes_add(&m->notes, &line);
 }
 
 /* An image goes out, by any thread. Of one of its own the output tells when it is complete. */
 static zt_status note_image(void *user, const zt_image *image) {
-    zt_making *m = user;
+    zt_filming *m = user;
     if (!m->remembers && !m->timed) return ZT_OK;
-    zt_manifest_frame *made = zt_making_of(m, image->info.frame);
+    zt_manifest_frame *made = zt_filming_of(m, image->info.frame);
     ZT_TRY(zt_sums_of(&made->pixels, m->sums, image));
     if (m->still && m->remembers) return ZT_OK;
     return zt_notes_add(&m->notes, &(zt_manifest_line){.kind = ZT_LINE_FRAME, .frame = *made});
@@ -56,7 +56,7 @@ static zt_status note_image(void *user, const zt_image *image) {
  */
 
 /* Whether a frame has what this budget chose for it, by this way of sampling. */
-static bool is_of_budget(const zt_making *m, const zt_manifest_frame *f) {
+static bool is_of_budget(const zt_filming *m, const zt_manifest_frame *f) {
     const zt_sampling *s = &m->renderer->sampling;
     const zt_budget *b = &m->order->budget;
     bool adaptive = s->min != s->max;
@@ -66,7 +66,7 @@ static bool is_of_budget(const zt_making *m, const zt_manifest_frame *f) {
 }
 
 /* Finds out how many samples there is time for. */
-static zt_status take_budget(zt_making *m) {
+static zt_status take_budget(zt_filming *m) {
     zt_budget left = m->order->budget;
     m->rest.numbers = calloc((size_t)m->frames.count, sizeof *m->rest.numbers);
     if (!m->rest.numbers) return ZT_EMEMORY;
@@ -87,7 +87,7 @@ static zt_status take_budget(zt_making *m) {
  */
 
 /* With a budget, those of frames that were rendered with it. */
-static zt_status find_keys(zt_making *m) {
+static zt_status find_keys(zt_filming *m) {
     zt_renderer *r = m->renderer;
     const zt_manifest *followed = r->followed;
     zt_status status = ZT_OK;
@@ -105,7 +105,7 @@ static zt_status find_keys(zt_making *m) {
 }
 
 /* Asks the output what it lacks. */
-static zt_status find_wanted(zt_making *m) {
+static zt_status find_wanted(zt_filming *m) {
     for (int64_t i = 0; i < m->frames.count; i++) {
         ZT_TRY(ask_to_go_on(m));
         m->wanted[i] = zt_output_wants(m->output, i);
@@ -114,7 +114,7 @@ static zt_status find_wanted(zt_making *m) {
     return ZT_OK;
 }
 
-static zt_status make_film(zt_making *m) {
+static zt_status make_film(zt_filming *m) {
     ZT_TRY(find_wanted(m));
     const zt_verify_job job = {m->frames.numbers, m->keys,        m->wanted,
                                m->frames.count,   m->notes.known, m->order->target};
@@ -122,11 +122,11 @@ static zt_status make_film(zt_making *m) {
         ZT_TRY(zt_verify_frames(&m->result->verified, &job, m->order->verify, m->renderer,
                                 m->watcher));
     if (m->timed) ZT_TRY(take_budget(m));
-    return zt_making_all(m);
+    return zt_filming_all(m);
 }
 
 /* A film's sound is that from its first frame on. */
-static zt_status choose_wishes(zt_making *m) {
+static zt_status choose_wishes(zt_filming *m) {
     const zt_output_option *wish = m->order->options;
     size_t count = 0;
     while (wish && wish[count].name) count++;
@@ -144,28 +144,29 @@ static zt_status choose_wishes(zt_making *m) {
 
 /* Opens the output, and meanwhile renders the first frame, if nothing is known of earlier runs:
  * then it is wanted, but for what an encoder may have kept of one that was killed early. */
-static zt_status open_and_begin(zt_making *m, const zt_output_format *format) {
+static zt_status open_and_begin(zt_filming *m, const zt_output_format *format) {
     zt_opening opening = {.target = m->order->target,
                           .format = format,
                           .options = m->wishes,
                           .listener = m->renderer->listener,
                           .watcher = m->watcher};
     const zt_manifest *known = m->notes.known;
-    zt_opening_begin(&opening);
     bool begins = zt_opening_takes(&opening) && !m->timed &&
                   (m->order->overwrites || !known || known->record_count == 0);
-    zt_status begun = ZT_OK;
+    zt_status begun = begins ? zt_renderer_start(m->renderer) : ZT_OK;
+    if (begun != ZT_OK) return begun;
+    zt_opening_begin(&opening);
     if (begins) {
         const zt_watcher meanwhile = zt_opening_watcher(&opening);
         m->watcher = &meanwhile;
-        begun = zt_making_begin(m);
+        begun = zt_filming_begin(m);
         m->watcher = opening.watcher;
     }
     zt_status opened = zt_opening_end(&m->output, &opening);
     return opened != ZT_OK ? opened : begun;
 }
 
-static zt_status make_into_output(zt_making *m) {
+static zt_status make_into_output(zt_filming *m) {
     zt_output_format format = m->renderer->format;
     const zt_output_plan plan = {.frames = m->frames.numbers,
                                  .keys = m->keys,
@@ -185,15 +186,15 @@ static zt_status make_into_output(zt_making *m) {
     if (m->planned && m->still)
         ZT_TRY(zt_again_group(m->frames.numbers, m->keys, m->frames.count));
     ZT_TRY(choose_wishes(m));
-    ZT_TRY(zt_making_open(m, note_image));
+    ZT_TRY(zt_filming_open(m, note_image));
     zt_status status = open_and_begin(m, &format);
     if (status == ZT_OK) status = make_film(m);
-    zt_status written = zt_making_close(m), closed = zt_output_close(&m->output);
+    zt_status written = zt_filming_close(m), closed = zt_output_close(&m->output);
     if (written != ZT_OK) status = written;
     return closed != ZT_OK ? closed : status;
 }
 
-static zt_status take_part(zt_making *m) {
+static zt_status take_part(zt_filming *m) {
     const zt_film_order *o = m->order;
     if (o->part_count > 0)
         ZT_TRY(zt_split_take(&m->frames, o->part, o->part_count,
@@ -205,7 +206,7 @@ static zt_status take_part(zt_making *m) {
     return ZT_OK;
 }
 
-static zt_status push_lists(zt_making *m) {
+static zt_status push_lists(zt_filming *m) {
     size_t count = (size_t)m->frames.count;
     m->keys = calloc(count, sizeof *m->keys);
     m->wanted = calloc(count, sizeof *m->wanted);
@@ -213,11 +214,11 @@ static zt_status push_lists(zt_making *m) {
     if (!m->keys || !m->wanted || !m->made) return ZT_EMEMORY;
     for (size_t i = 0; i < count; i++)
         m->made[i] = (zt_manifest_frame){.frame = m->frames.numbers[i], .render_s = -1};
-    qsort(m->made, count, sizeof *m->made, zt_making_by_frame);
+    qsort(m->made, count, sizeof *m->made, zt_filming_by_frame);
     return zt_sums_open(&m->sums);
 }
 
-static zt_status open_notes(zt_making *m) {
+static zt_status open_notes(zt_filming *m) {
     const zt_renderer *r = m->renderer;
     char *written = zt_notes_wishes(m->order->options);
     if (!written) return ZT_EMEMORY;
@@ -234,7 +235,7 @@ static zt_status open_notes(zt_making *m) {
     return status;
 }
 
-static zt_status make(zt_making *m) {
+static zt_status make(zt_filming *m) {
     const zt_film_order *o = m->order;
     m->frames.count = o->frames->count;
     m->frames.numbers = calloc((size_t)m->frames.count, sizeof *m->frames.numbers);
@@ -265,7 +266,7 @@ zt_status zt_film_render(zt_film_result *result, zt_renderer *r, const zt_film_o
     static const char *const made_anew[] = {".hash", NULL};
     *result = (zt_film_result){0};
     if (order->frames->count < 1) return ZT_EARGUMENT;
-    zt_making m = {.renderer = r, .order = order, .watcher = watcher, .result = result};
+    zt_filming m = {.renderer = r, .order = order, .watcher = watcher, .result = result};
     m.still = ends_with_any(order->target, zt_image_file_endings);
     m.remembers = !order->forgets && !ends_with_any(order->target, made_anew);
     m.timed = order->budget.film_s > 0 || order->budget.frame_s > 0;

@@ -8,16 +8,16 @@ static void open_output(void *user) {
     atomic_store(&o->refused, o->status != ZT_OK);
 }
 
+bool zt_opening_takes(const zt_opening *o) { return zt_output_module(o->target) != NULL; }
+
 void zt_opening_begin(zt_opening *o) {
     /* Without a thread, it is opened at once. */
-    if (zt_output_module(o->target)) (void)zt_errand_open(&o->errand, open_output, o);
+    if (zt_opening_takes(o)) (void)zt_errand_open(&o->errand, open_output, o);
     if (o->errand)
         zt_errand_send(o->errand);
     else
         open_output(o);
 }
-
-bool zt_opening_takes(const zt_opening *o) { return o->errand != NULL; }
 
 static bool stopped(void *user) {
     zt_opening *o = user;

@@ -24,12 +24,13 @@ typedef struct zt_opening {
     atomic_bool refused;
 } zt_opening;
 
-/* Begins to open it, on a thread of its own, where it needs a module; else opens it. Until
- * zt_opening_end(), it stays where it is, and all that it points to as it is. */
-void zt_opening_begin(zt_opening *opening);
-
-/* Whether it takes a while. */
+/* Whether it takes a while, for loading a module. */
 bool zt_opening_takes(const zt_opening *opening);
+
+/* Begins to open it, on a thread of its own, where it takes a while; else opens it. Until
+ * zt_opening_end(), it stays where it is, and all that it points to as it is; and no thread
+ * starts, nor does another module load, before the linker is done. */
+void zt_opening_begin(zt_opening *opening);
 
 /* Stops what is rendered meanwhile when the output was refused. */
 zt_watcher zt_opening_watcher(zt_opening *opening);

@@ -112,6 +112,20 @@ static zt_hash view_of(const zt_renderer *r, const zt_exposure *exposure) {
     return zt_hash_bytes(parts, sizeof parts);
 }
 
+zt_status zt_renderer_start(zt_renderer *r) {
+    const zt_scene *rest = &r->animation->rest;
+    bool meshes = false;
+    int32_t bounded = 0;
+    for (int32_t i = 0; i < rest->object_count; i++) {
+        const zt_shape shape = rest->objects[i].shape;
+        meshes |= shape == ZT_SHAPE_MESH;
+        bounded += shape != ZT_SHAPE_PLANE && shape != ZT_SHAPE_GROUP;
+    }
+    bool crowd =
+        bounded > ZT_SINGLE_MAX && zt_module_is_built("embree", NULL, (zt_listener){0});
+    return meshes || crowd ? zt_meshes_start(r->meshes) : ZT_OK;
+}
+
 zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
     double begun_s = zt_clock_s();
     zt_arena_reset(&r->frame);

@@ -66,6 +66,10 @@ typedef struct zt_taking {
  */
 extern const char zt_arithmetic[];
 
+/* Has start whatever frames of the film will need for sure: Embree, where there is a mesh or a
+ * crowd. Else it starts when it is first needed. Fails, and tells it, where that cannot be. */
+zt_status zt_renderer_start(zt_renderer *renderer);
+
 /* All that comes before rendering. */
 zt_status zt_renderer_prepare(zt_taking *taking, zt_renderer *renderer, int64_t frame);
 

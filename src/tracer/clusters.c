@@ -15,8 +15,7 @@ enum {
     BINS = 16,
     DEPTH_MAX = 60,
     LATER_MAX = 256, /* parts that threads take, at most */
-    AT_ONCE = 1024,  /* clusters written by one task */
-    MANY = 10000     /* triangles that are worth the start of threads */
+    AT_ONCE = 1024   /* clusters written by one task */
 };
 
 /* Four of each, so that a register holds them; the fourth means nothing. */
@@ -202,7 +201,7 @@ static void put_some(void *user, int task, int worker) {
     for (int32_t index = task * AT_ONCE; index < end; index++) put_cluster(w, index);
 }
 
-/* On several threads, where there is enough to do for them and they can be had. */
+/* On several threads, where there are any. */
 static void run(zt_pool *pool, int count, void (*task)(void *, int, int), work *w) {
     if (pool) zt_pool_run(pool, count, task, w);
     for (int i = 0; !pool && i < count; i++) task(w, i, 0);
@@ -221,7 +220,7 @@ static void bound_triangles(item *items, const float *positions, const uint32_t 
 }
 
 zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint32_t *triangles,
-                            int32_t triangle_count, int threads) {
+                            int32_t triangle_count, zt_pool *pool) {
     *out = (zt_clusters){0};
     size_t count = (size_t)triangle_count;
     work w = {.out = out,
@@ -229,8 +228,6 @@ zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint
               .starts = calloc(count + 1, sizeof *w.starts),
               .positions = positions,
               .triangles = triangles};
-    zt_pool *pool = NULL;
-    if (threads > 1 && triangle_count >= MANY) zt_pool_open(&pool, threads);
     if (w.items && w.starts) {
         bound_triangles(w.items, positions, triangles, triangle_count);
         split(&w, (range){w.items, triangle_count, 0}, triangle_count / 16);
@@ -242,7 +239,6 @@ zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint
         if (out->clusters && out->boxes)
             run(pool, (out->count + AT_ONCE - 1) / AT_ONCE, put_some, &w);
     }
-    zt_pool_close(&pool);
     free(w.items);
     free(w.starts);
     if (out->clusters && out->boxes) return ZT_OK;

@@ -8,6 +8,7 @@
 
 #include <zoetrope/status.h>
 
+#include "base/pool.h"
 #include "tracer/bvh.h"
 
 /* Corner 0, 1 and 2 of each triangle, by axis: corners[corner][axis][triangle]. Where there are
@@ -24,10 +25,12 @@ typedef struct zt_clusters {
     int32_t count;
 } zt_clusters;
 
-/* `positions` are three finite floats for each vertex, `triangles` three indices each. Many
- * triangles are shared out among so many threads; the number changes nothing. ZT_EMEMORY. */
+/* `positions` are three finite floats for each vertex, `triangles` three indices each. They
+ * are shared out among the pool's threads (NULL: the caller's alone), which changes nothing; so
+ * many are worth more than one. ZT_EMEMORY. */
+enum { ZT_CLUSTERS_MANY = 10000 };
 zt_status zt_clusters_build(zt_clusters *out, const float *positions, const uint32_t *triangles,
-                            int32_t triangle_count, int threads);
+                            int32_t triangle_count, zt_pool *pool);
 void zt_clusters_free(zt_clusters *clusters);
 
 #endif

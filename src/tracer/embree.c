@@ -39,7 +39,7 @@ static void tell_device_error(void *user, enum RTCError code, const char *text) 
 
 static zt_status embree_open(zt_embree **out, int threads, zt_listener listener) {
     char config[32];
-    snprintf(config, sizeof config, "threads=%d", threads);
+    snprintf(config, sizeof config, "threads=%d,start_threads=1", threads);
     zt_embree *embree = *out = calloc(1, sizeof *embree);
     if (!embree) return ZT_EMEMORY;
     embree->listener = listener;

@@ -11,6 +11,7 @@
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
+    zt_pool *pool;        /* what shares in building; NULL: no mesh is worth it */
     mtx_t building;       /* held while a mesh is built */
     zt_status status;     /* of that */
     zt_built_mesh *built; /* one for each mesh */
@@ -51,6 +52,7 @@ void zt_meshes_close(zt_meshes **slot) {
     for (int i = 0; i < 2; i++) zt_bvh_free(&m->crowds[i]);
     free(m->stayed);
     zt_bvh_close(&m->builder);
+    zt_pool_close(&m->pool);
     mtx_destroy(&m->building);
     free(m->built);
     free(m);
@@ -68,10 +70,10 @@ static zt_status build_hull(zt_built_mesh *b) {
 
 /* The boxes are grown by the roundings, in single precision, of rays that begin near the mesh
  * and of their intersection with what is within. */
-static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder) {
+static zt_status build_bvh(zt_built_mesh *b, zt_bvh_builder *builder, zt_pool *pool) {
     const zt_mesh *mesh = b->mesh;
     ZT_TRY(zt_clusters_build(&b->clusters, mesh->positions, mesh->triangles,
-                             mesh->triangle_count, zt_bvh_threads(builder)));
+                             mesh->triangle_count, pool));
     const zt_bvh_box *all = &b->hull->boxes[1];
     float size = 0;
     for (int axis = 0; axis < 3; axis++)
@@ -98,10 +100,25 @@ static zt_bvh_box box_around(const zt_mesh *mesh) {
     return box;
 }
 
+static bool has_large(const zt_meshes *m) {
+    bool has = false;
+    for (int32_t i = 0; i < m->mesh_count; i++)
+        has |= m->built[i].mesh->triangle_count >= ZT_CLUSTERS_MANY;
+    return has;
+}
+
+zt_status zt_meshes_start(zt_meshes *m) {
+    const int threads = zt_bvh_threads(m->builder);
+    ZT_TRY(zt_bvh_start(m->builder));
+    /* Without the threads it takes longer. */
+    if (!m->pool && threads > 1 && has_large(m)) (void)zt_pool_open(&m->pool, threads);
+    return ZT_OK;
+}
+
 zt_status zt_meshes_begin(zt_built_mesh **built, zt_meshes *m, int32_t index) {
     zt_built_mesh *b = *built = &m->built[index];
     if (b->owner) return ZT_OK;
-    ZT_TRY(zt_bvh_start(m->builder));
+    ZT_TRY(zt_meshes_start(m));
     b->content = zt_mesh_content(b->mesh);
     b->around = box_around(b->mesh);
     b->owner = m;
@@ -113,7 +130,7 @@ bool zt_meshes_build(zt_built_mesh *b) {
     mtx_lock(&m->building);
     if (m->status == ZT_OK && !zt_mesh_is_built(b)) {
         m->status = build_hull(b);
-        if (m->status == ZT_OK) m->status = build_bvh(b, m->builder);
+        if (m->status == ZT_OK) m->status = build_bvh(b, m->builder, m->pool);
         atomic_store_explicit(&b->built, m->status == ZT_OK, memory_order_release);
     }
     mtx_unlock(&m->building);

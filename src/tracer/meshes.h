@@ -33,6 +33,10 @@ typedef struct zt_built_mesh {
     zt_hull *hull;
 } zt_built_mesh;
 
+/* Has Embree load, and all threads start that will build; also where nothing is built yet.
+ * Fails, and tells it, where that cannot be. */
+zt_status zt_meshes_start(zt_meshes *meshes);
+
 /* All that a mesh needs before any ray. Fails, and tells it, where it cannot be built. */
 zt_status zt_meshes_begin(zt_built_mesh **built, zt_meshes *meshes, int32_t mesh);
 
@@ -49,6 +53,9 @@ bool zt_meshes_met(const zt_meshes *meshes, int32_t mesh);
 
 /* Of all that was built so far; to be asked once rays have been traced. */
 zt_status zt_meshes_status(const zt_meshes *meshes);
+
+/* More bounded things than this are a crowd: they are asked through a hierarchy. */
+enum { ZT_SINGLE_MAX = 32 };
 
 /* A hierarchy over boxes: one that serves one frame; or, of what `stays`, one that is kept for
  * as long as the boxes are the same. */

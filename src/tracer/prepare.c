@@ -9,9 +9,6 @@
 #include "base/module.h"
 #include "tracer/motion.h"
 
-/* More bounded things than this are asked through a hierarchy. */
-enum { SINGLE_MAX = 32 };
-
 static void make_pattern(zt_weave *weave, const zt_material *material, const zt_making *m) {
     xform place = ZT_REAL_NAME(zt_pattern_place)(m->object, m->world);
     xform back = xform_inverse(&place);
@@ -248,7 +245,7 @@ zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
     const bool built = zt_module_is_built("embree", NULL, (zt_listener){0});
     int32_t counts[GROUP_COUNT] = {0};
     for (int32_t i = 0; i < tracer->primitive_count; i++) counts[group_of(tracer, i)]++;
-    const bool apart = counts[STAYING] > SINGLE_MAX;
+    const bool apart = counts[STAYING] > ZT_SINGLE_MAX;
     if (!apart) counts[OTHERS] += counts[STAYING];
     const size_t room = (size_t)tracer->primitive_count;
     int32_t *single = ZT_PUSH(arena, int32_t, room);
@@ -260,7 +257,7 @@ zt_status ZT_REAL_NAME(zt_prepare_search)(zt_tracer *tracer, zt_meshes *meshes,
     for (int32_t i = 0; i < tracer->primitive_count; i++) {
         int group = group_of(tracer, i);
         if (group == STAYING && !apart) group = OTHERS;
-        if (group == UNBOUNDED || !built || counts[group] <= SINGLE_MAX)
+        if (group == UNBOUNDED || !built || counts[group] <= ZT_SINGLE_MAX)
             single[tracer->single_count++] = i;
         else
             members[group][found[group]++] = i;

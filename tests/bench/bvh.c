@@ -313,7 +313,8 @@ static void measure_mesh(int along, int around, RTCDevice device, zt_bvh_builder
     zt_clusters clusters;
     zt_bvh *bvh = NULL;
     double begin = zt_clock_s();
-    must(zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count, 1) == ZT_OK,
+    must(zt_clusters_build(&clusters, m.positions, m.triangles, m.triangle_count, NULL) ==
+             ZT_OK,
          "making clusters");
     double clustered = zt_clock_s();
     must(zt_bvh_of_boxes(&bvh, builder, clusters.boxes, clusters.count) == ZT_OK,

@@ -1,7 +1,7 @@
 /* A film under way, and the rendering of its frames (sequence/film.c does what comes before).
  */
-#ifndef ZT_SEQUENCE_MAKING_H
-#define ZT_SEQUENCE_MAKING_H
+#ifndef ZT_SEQUENCE_FILMING_H
+#define ZT_SEQUENCE_FILMING_H
 
 #include <stdbool.h>
 
@@ -16,7 +16,7 @@
 #include "sequence/sums.h"
 
 /* A film under way. */
-typedef struct zt_making {
+typedef struct zt_filming {
     zt_renderer *renderer;
     const zt_film_order *order;
     const zt_watcher *watcher;
@@ -40,24 +40,24 @@ typedef struct zt_making {
     zt_image *last;  /* that was lent and filled; NULL: none */
     bool fresh;      /* it was rendered, and is not counted yet */
     zt_settings_texts settings;
-} zt_making;
+} zt_filming;
 
 /* What is noted of a frame. */
-zt_manifest_frame *zt_making_of(const zt_making *m, int64_t frame);
+zt_manifest_frame *zt_filming_of(const zt_filming *m, int64_t frame);
 
-/* The order that zt_making_of() needs of `made`, for qsort(). */
-int zt_making_by_frame(const void *a, const void *b);
+/* The order that zt_filming_of() needs of `made`, for qsort(). */
+int zt_filming_by_frame(const void *a, const void *b);
 
 /* The way out, on which `look` sees each image; closing waits for what is still being written.
  */
-zt_status zt_making_open(zt_making *m, zt_status (*look)(void *user, const zt_image *image));
-zt_status zt_making_close(zt_making *m);
+zt_status zt_filming_open(zt_filming *m, zt_status (*look)(void *user, const zt_image *image));
+zt_status zt_filming_close(zt_filming *m);
 
 /* Renders the first frame before there is an output. If that does not want it, it was for
  * nothing. */
-zt_status zt_making_begin(zt_making *m);
+zt_status zt_filming_begin(zt_filming *m);
 
 /* Renders all that is wanted, and sends it to the output. */
-zt_status zt_making_all(zt_making *m);
+zt_status zt_filming_all(zt_filming *m);
 
 #endif

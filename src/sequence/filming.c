@@ -1,4 +1,4 @@
-#include "sequence/making.h"
+#include "sequence/filming.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -6,20 +6,20 @@
 #include "sequence/keepsakes.h"
 #include "sequence/pacing.h"
 
-int zt_making_by_frame(const void *a, const void *b) {
+int zt_filming_by_frame(const void *a, const void *b) {
     const zt_manifest_frame *one = a, *other = b;
     return (one->frame > other->frame) - (one->frame < other->frame);
 }
 
-zt_manifest_frame *zt_making_of(const zt_making *m, int64_t frame) {
+zt_manifest_frame *zt_filming_of(const zt_filming *m, int64_t frame) {
     const zt_manifest_frame wanted = {.frame = frame};
     return bsearch(&wanted, m->made, (size_t)m->frames.count, sizeof wanted,
-                   zt_making_by_frame);
+                   zt_filming_by_frame);
 }
 
-static zt_status render_image(zt_making *m, int64_t frame, zt_hash key) {
+static zt_status render_image(zt_filming *m, int64_t frame, zt_hash key) {
     zt_renderer *r = m->renderer;
-    zt_manifest_frame *made = zt_making_of(m, frame);
+    zt_manifest_frame *made = zt_filming_of(m, frame);
     zt_sampling sampling;
     ZT_TRY(zt_settings_of_frame(&m->settings, r, m->order, frame));
     ZT_TRY(zt_pacing_sampling(&sampling, r, frame));
@@ -51,7 +51,7 @@ static zt_status render_image(zt_making *m, int64_t frame, zt_hash key) {
 }
 
 /* Has m->last show the frame of a position: as it is, from one that was kept, or rendered. */
-static zt_status make_image(zt_making *m, int64_t position) {
+static zt_status make_image(zt_filming *m, int64_t position) {
     int64_t frame = m->frames.numbers[position];
     zt_hash *key = &m->keys[position];
     if (!m->planned) ZT_TRY(zt_renderer_key(key, m->renderer, frame));
@@ -64,15 +64,15 @@ static zt_status make_image(zt_making *m, int64_t position) {
     }
     if (!equal && !kept) return render_image(m, frame, *key);
     if (kept) zt_again_copy(m->last, kept);
-    zt_manifest_frame *made = zt_making_of(m, frame);
+    zt_manifest_frame *made = zt_filming_of(m, frame);
     made->key = *key;
-    made->render_s = zt_making_of(m, m->last->info.frame)->render_s;
+    made->render_s = zt_filming_of(m, m->last->info.frame)->render_s;
     m->result->held++;
     return ZT_OK;
 }
 
 /* What is fresh was rendered while the output was being opened, and is the first one. */
-static zt_status make_and_send(zt_making *m, int64_t position) {
+static zt_status make_and_send(zt_filming *m, int64_t position) {
     if (!m->fresh) ZT_TRY(make_image(m, position));
     zt_image_info info = m->last->info;
     info.frame = m->frames.numbers[position];
@@ -84,9 +84,9 @@ static zt_status make_and_send(zt_making *m, int64_t position) {
     return m->again ? zt_again_keep(m->again, position, m->last) : ZT_OK;
 }
 
-zt_status zt_making_begin(zt_making *m) { return make_image(m, 0); }
+zt_status zt_filming_begin(zt_filming *m) { return make_image(m, 0); }
 
-zt_status zt_making_all(zt_making *m) {
+zt_status zt_filming_all(zt_filming *m) {
     if (m->planned) ZT_TRY(zt_again_open(&m->again, m->keys, m->wanted, m->frames.count));
     zt_outway_lead(m->way, m->output);
     for (int64_t i = 0; i < m->frames.count; i++) {
@@ -99,7 +99,7 @@ zt_status zt_making_all(zt_making *m) {
     return ZT_OK;
 }
 
-zt_status zt_making_open(zt_making *m, zt_status (*look)(void *user, const zt_image *image)) {
+zt_status zt_filming_open(zt_filming *m, zt_status (*look)(void *user, const zt_image *image)) {
     const zt_renderer *r = m->renderer;
     ZT_TRY(zt_outway_open(&m->way, r->format.width, r->format.height, r->aovs,
                           zt_pool_thread_count(r->pool)));
@@ -107,7 +107,7 @@ zt_status zt_making_open(zt_making *m, zt_status (*look)(void *user, const zt_im
     return ZT_OK;
 }
 
-zt_status zt_making_close(zt_making *m) {
+zt_status zt_filming_close(zt_filming *m) {
     if (m->last) zt_outway_release(m->way, m->last);
     return zt_outway_close(&m->way);
 }
