@@ -23,6 +23,10 @@ typedef struct zt_ray_stats {
 typedef struct zt_stats {
     int64_t frames;
     zt_ray_stats primary, shadow, mirror;
+    /* Rays travel up to 256 together, those of a tile if it takes one sample a pixel: how many
+     * such batches there were, how many of them met nothing, and how many one flat thing alone
+     * that nothing shadows and that mirrors nothing. */
+    int64_t batches, bare_batches, flat_batches;
     int64_t tiles, copied_tiles; /* copied from the frame before, or from before an edit */
     int64_t found, found_tiles,
         found_copied;                  /* frames of which an earlier run's was there; their

@@ -8,13 +8,11 @@
 
 #include "base/diag.h"
 #include "render/edges.h"
+#include "render/pixels.h"
 #include "render/refine.h"
 #include "render/reuse.h"
 #include "render/work.h"
 #include "tracer/isa.h"
-
-/* Pixels side by side that are written at once. */
-enum { RUN = 4 };
 
 /* The pixels of a tile: columns x .. x + width - 1, rows y .. y + height - 1. */
 typedef struct tile {
@@ -77,122 +75,57 @@ static int list_pixels(zt_render_thread *own, const zt_frame *f, tile area, int 
     return count;
 }
 
-/* Adds a sample of each pixel, from `first` in the batch on, to the sums; returns how many were
- * not finite. */
-ZT_CLONES static int add_samples(zt_radiance *restrict sum, int32_t *restrict taken,
-                                 const zt_radiance *restrict light, int first, int count) {
-    int left_out = 0;
-    for (int i = 0; i < count; i++) {
-        float r = light->r[first + i], g = light->g[first + i], b = light->b[first + i];
-        bool finite = zt_finite3(r, g, b);
-        sum->r[i] += finite ? r : 0;
-        sum->g[i] += finite ? g : 0;
-        sum->b[i] += finite ? b : 0;
-        taken[i] += finite;
-        left_out += !finite;
-    }
-    return left_out;
-}
-
-/* Adds which of those samples met something. */
-ZT_CLONES static void add_cover(zt_radiance *restrict sum, const zt_radiance *restrict light,
-                                int first, int count) {
-    for (int i = 0; i < count; i++) {
-        bool finite = zt_finite3(light->r[first + i], light->g[first + i], light->b[first + i]);
-        sum->a[i] += finite ? light->a[first + i] : 0;
-    }
-}
-
-/* Makes the sums the means. */
-ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict taken,
-                              int count) {
-    for (int i = 0; i < count; i++) {
-        float share = taken[i] ? 1 / (float)taken[i] : 0;
-        sum->r[i] *= share;
-        sum->g[i] *= share;
-        sum->b[i] *= share;
-    }
-}
-
-/* The mean of what was added, 1 where all samples met something. */
-static void find_alpha(float *restrict alpha, const int32_t *restrict taken, int count,
-                       bool transparent) {
-    for (int i = 0; i < count; i++)
-        alpha[i] = !transparent ? 1 : taken[i] ? alpha[i] / (float)taken[i] : 0;
-}
-
-/* Four pixels, a line of a cache, past the caches: a picture that does not fit there is written
- * without being read before. */
-static inline void stream_run(float *to, const float *r, const float *g, const float *b,
-                              const float *a) {
-#if defined __SSE__
-    __m128 x = _mm_load_ps(r), y = _mm_load_ps(g), z = _mm_load_ps(b), w = _mm_load_ps(a);
-    _MM_TRANSPOSE4_PS(x, y, z, w);
-    _mm_stream_ps(to, x);
-    _mm_stream_ps(to + 4, y);
-    _mm_stream_ps(to + 8, z);
-    _mm_stream_ps(to + 12, w);
-#else
-    for (int k = 0; k < RUN; k++)
-        memcpy(to + 4 * k, (float[4]){r[k], g[k], b[k], a[k]}, 4 * sizeof(float));
-#endif
-}
-
-/* Writes means to the image, where a whole tile is listed four pixels of a row at a time. */
-static void fill_pixels(float *restrict pixels, int width, const zt_radiance *restrict sum,
-                        const int32_t *restrict column, const int32_t *restrict row, int count,
-                        bool whole) {
-    bool runs = whole && width % RUN == 0;
-    for (int i = 0; runs && i < count; i += RUN)
-        stream_run(pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]),
-                   sum->r + i, sum->g + i, sum->b + i, sum->a + i);
-    for (int i = 0; !runs && i < count; i++) {
-        float *to = pixels + 4 * ((size_t)row[i] * (size_t)width + (size_t)column[i]);
-        memcpy(to, (float[4]){sum->r[i], sum->g[i], sum->b[i], sum->a[i]}, 4 * sizeof(float));
-    }
-}
-
-static void fill_paths(uint32_t *restrict paths, int width, const uint32_t *restrict path,
-                       const int32_t *restrict column, const int32_t *restrict row, int count,
-                       bool whole) {
-    int run = whole ? 4 : 1;
-    for (int i = 0; i < count; i += run)
-        memcpy(paths + (size_t)row[i] * (size_t)width + (size_t)column[i], path + i,
-               whole ? 4 * sizeof *path : sizeof *path);
-}
-
-/* All samples of some pixels of a tile, as many of each in a batch as there is room for. */
-static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int first, int most) {
+/* All samples of some pixels, as many of each in a batch as there is room for. */
+static bool sum_samples(zt_frame *f, zt_render_thread *own, int count) {
     const zt_render_job *job = f->job;
-    int samples = f->at_edges ? 1 : job->sampling.max;
-    int count = list_pixels(own, f, area, first, most);
-    if (count == 0) return true;
+    int samples = job->sampling.max, together = ZT_BATCH / count;
+    int bare = 0; /* samples of which it is known that they are black and finite */
     memset(&own->sum, 0, offsetof(zt_radiance, path));
     memset(own->taken, 0, sizeof own->taken);
     if (job->transparent) memset(own->sum.a, 0, sizeof own->sum.a);
-    own->rays.wants_path = f->at_edges;
-    own->rays.wants_cover = job->transparent;
-    int together = ZT_BATCH / count;
     for (int done = 0; done < samples; done += together) {
         if (job->stopped && job->stopped(job->user)) return false;
         int now = min_int(together, samples - done);
         for (int k = 0; k < now; k++)
             zt_samples_take(&own->places, &own->rays, job, own->column, own->row, k * count,
-                            count, f->at_edges ? ZT_SAMPLE_MIDDLE : done + k);
-        zt_frame_trace(f, own, count, now);
-        for (int k = 0; k < now; k++) {
-            own->count.left_out +=
-                add_samples(&own->sum, own->taken, &own->light, k * count, count);
-            if (job->transparent) add_cover(&own->sum, &own->light, k * count, count);
-        }
+                            count, done + k);
+        bool met = zt_frame_trace(f, own, count, now);
+        for (int k = 0; met && k < now; k++)
+            own->count.left_out += zt_pixels_add(&own->sum, own->taken, &own->light, k * count,
+                                                 count, job->transparent);
+        bare += met ? 0 : now;
     }
-    average(&own->sum, own->taken, count);
-    find_alpha(own->sum.a, own->taken, count, job->transparent);
-    fill_pixels(f->image->pixels, f->image->width, &own->sum, own->column, own->row, count,
-                count == most && !f->keeps); /* what is kept is read again */
+    for (int i = 0; bare > 0 && i < count; i++) own->taken[i] += bare;
+    zt_pixels_average(&own->sum, own->taken, count, job->transparent);
+    return true;
+}
+
+/* One sample of some pixels, in their middle. */
+static bool take_middles(zt_frame *f, zt_render_thread *own, int count) {
+    const zt_render_job *job = f->job;
+    if (job->stopped && job->stopped(job->user)) return false;
+    zt_samples_take(&own->places, &own->rays, job, own->column, own->row, 0, count,
+                    ZT_SAMPLE_MIDDLE);
+    zt_frame_trace(f, own, count, 1);
+    own->count.left_out += zt_pixels_settle(&own->light, count, job->transparent);
+    return true;
+}
+
+/* Some pixels of a tile. */
+static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int first, int most) {
+    const zt_render_job *job = f->job;
+    const bool single = f->at_edges || job->sampling.max == 1;
+    int count = list_pixels(own, f, area, first, most);
+    if (count == 0) return true;
+    own->rays.wants_path = f->at_edges;
+    own->rays.wants_cover = job->transparent;
+    if (!(single ? take_middles : sum_samples)(f, own, count)) return false;
+    zt_pixels_fill(f->image->pixels, f->image->width, single ? &own->light : &own->sum,
+                   own->column, own->row, count,
+                   count == most && !f->keeps); /* what is kept is read again */
     if (f->at_edges)
-        fill_paths(f->paths, f->image->width, own->light.path, own->column, own->row, count,
-                   count == most);
+        zt_pixels_fill_paths(f->paths, f->image->width, own->light.path, own->column, own->row,
+                             count, count == most);
     return true;
 }
 
@@ -348,6 +281,9 @@ static zt_status render_all(zt_frame *f) {
     f->at_edges = !f->even && job->sampling.edges && can_tell_edges(job);
     if (f->even) fill_channels(f->image, &job->sampling);
     ZT_TRY(zt_reuse_begin(f));
+    const zt_kernel *kernel = job->scene->kernel;
+    f->trace =
+        job->scene->plain && !f->keeps && !f->at_edges ? kernel->trace_plain : kernel->trace;
     zt_status status = render_once(f);
     if (status == ZT_OK && f->doubtful) {
         zt_reuse_renounce(f);

@@ -11,18 +11,6 @@ void zt_samples_key(zt_places *restrict places, const zt_render_job *job,
     }
 }
 
-/* Within the pixel, from its top left corner. */
-static void place(zt_places *p, const zt_render_job *job, int first, int count, int sample) {
-    float *x = p->x + first, *y = p->y + first, *weight = p->weight + first;
-    if (sample >= 0 && job->sampling.max > 1) {
-        zt_sample_points(x, y, p->place_key, ZT_DIMENSION_PIXEL, (uint32_t)sample, count);
-        if (job->warp) zt_warp_places(x, y, weight, job->warp, count);
-    } else {
-        for (int i = 0; i < count; i++) x[i] = y[i] = 0.5f;
-        for (int i = 0; job->warp && i < count; i++) weight[i] = 1;
-    }
-}
-
 /* From within pixels to the picture. */
 ZT_CLONES static void add_corners(float *restrict x, float *restrict y,
                                   const int32_t *restrict column, const int32_t *restrict row,
@@ -33,13 +21,35 @@ ZT_CLONES static void add_corners(float *restrict x, float *restrict y,
     }
 }
 
+/* The middles of pixels. */
+ZT_CLONES static void place_middles(float *restrict x, float *restrict y,
+                                    const int32_t *restrict column, const int32_t *restrict row,
+                                    int count) {
+    for (int i = 0; i < count; i++) {
+        x[i] = 0.5f + (float)column[i];
+        y[i] = 0.5f + (float)row[i];
+    }
+}
+
+static void place(zt_places *p, const zt_render_job *job, const int32_t *column,
+                  const int32_t *row, int first, int count, int sample) {
+    float *x = p->x + first, *y = p->y + first, *weight = p->weight + first;
+    if (sample >= 0 && job->sampling.max > 1) {
+        zt_sample_points(x, y, p->place_key, ZT_DIMENSION_PIXEL, (uint32_t)sample, count);
+        if (job->warp) zt_warp_places(x, y, weight, job->warp, count);
+        add_corners(x, y, column, row, count);
+    } else {
+        place_middles(x, y, column, row, count);
+        for (int i = 0; job->warp && i < count; i++) weight[i] = 1;
+    }
+}
+
 void zt_samples_take(zt_places *p, zt_rays *rays, const zt_render_job *job,
                      const int32_t *restrict column, const int32_t *restrict row, int first,
                      int count, int sample) {
-    float *x = p->x + first, *y = p->y + first, unused[ZT_BATCH];
+    float unused[ZT_BATCH];
     uint32_t number = sample < 0 ? 0 : (uint32_t)sample;
-    place(p, job, first, count, sample);
-    add_corners(x, y, column, row, count);
+    place(p, job, column, row, first, count, sample);
     if (zt_lens_has_aperture(job->lens))
         zt_sample_points(p->u + first, p->v + first, p->key, ZT_DIMENSION_LENS, number, count);
     if (job->scene->moves || zt_lens_moves(job->lens))

@@ -37,15 +37,16 @@ static void turn_light(zt_radiance *light, const zt_rays *rays, int count, int n
     if (rays->wants_cover) turn(light->a, now, count);
 }
 
-void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now) {
+bool zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now) {
     const zt_render_job *job = f->job;
     const zt_places *p = &own->places;
     const bool turns = now > 1 && (f->costly || f->at_edges);
     if (turns) turn_places(own, job, count, now);
     zt_lens_rays(&own->rays, job->lens, p->x, p->y, p->u, p->v, now * count);
     own->light.counts = (zt_ray_counts){0};
-    job->scene->kernel->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
+    bool met = f->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
     own->count.samples += now * count;
     zt_ray_counts_add(&own->count.rays, &own->light.counts);
-    if (turns) turn_light(&own->light, &own->rays, count, now);
+    if (turns && met) turn_light(&own->light, &own->rays, count, now);
+    return met;
 }

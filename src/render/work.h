@@ -47,6 +47,7 @@ typedef struct zt_frame {
     int run;         /* tiles that a thread takes at a time */
     bool even;       /* as many samples in each pixel, which follow from nothing else; */
     uint32_t *paths; /* plane of what the middles of pixels saw; of at_edges */
+    zt_trace *trace; /* the kernel without what this frame does not ask for */
     bool costly;     /* rays look into hierarchies, and cost more than what else batches do */
     bool at_edges; /* or first one sample in the middle of each pixel, then more at edges alone
                     */
@@ -68,8 +69,9 @@ static inline int max_int(int a, int b) { return a > b ? a : b; }
 
 /* Traces `now` samples of each of `count` pixels, of which places and light lie one sample of
  * all pixels after the other. Where rays cost much, or have few others nearby, the samples of
- * each pixel travel side by side (render/trace.c). */
-void zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now);
+ * each pixel travel side by side (render/trace.c). Returns false where no ray met anything: all
+ * light is 0. */
+bool zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now);
 
 /* Whether somebody asked to stop. */
 static inline bool zt_frame_stopped(zt_frame *f) {

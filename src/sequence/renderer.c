@@ -199,6 +199,9 @@ static void add_cost(zt_renderer *r) {
     s->shadow.avoided += rays->shadow_avoided;
     s->mirror.traced += rays->mirror;
     s->mirror.avoided += rays->mirror_avoided;
+    s->batches += rays->batches;
+    s->bare_batches += rays->bare_batches;
+    s->flat_batches += rays->flat_batches;
     s->tiles += cost->tiles;
     s->copied_tiles += cost->tiles_copied;
     s->freeze_s += cost->freeze_s;

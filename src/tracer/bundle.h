@@ -97,9 +97,16 @@ static inline void zt_narrow(double *enter, double *leave, double near, double f
     if (fast < 0) *leave = least_of(*leave, near / fast);
 }
 
+/* Where along the rays of a bundle, which have no target, a thing may be met: no ray does so
+ * nearer than `near`, and all have by `far`, give or take a few roundings. */
+typedef struct zt_depths {
+    double near, far;
+} zt_depths;
+
 /* False only where no ray of a bundle meets a box, which is grown by more than the roundings of
  * an intersection with what is within. */
-static inline bool zt_bundle_meets(const zt_bundle *b, const zt_box *box, real stretch) {
+static inline bool zt_bundle_meets_at(zt_depths *at, const zt_bundle *b, const zt_box *box,
+                                      real stretch) {
     const zt_box *o = &b->origins, *d = &b->directions;
     real size = zt_box_size(o) + zt_box_size(box);
     double room = (double)(size * (BOX_ROUNDINGS * REAL_ROUNDING) * stretch);
@@ -114,7 +121,13 @@ static inline bool zt_bundle_meets(const zt_bundle *b, const zt_box *box, real s
     zt_narrow(&enter, &leave, (double)box->low.z - (double)o->high.z - room,
               (double)box->high.z - (double)o->low.z + room, (double)d->low.z,
               (double)d->high.z);
+    *at = (zt_depths){enter, INFINITY};
     return !(enter > leave * (1 + 0x1p-20));
+}
+
+static inline bool zt_bundle_meets(const zt_bundle *b, const zt_box *box, real stretch) {
+    zt_depths unused;
+    return zt_bundle_meets_at(&unused, b, box, stretch);
 }
 
 /* The least and the greatest of n . v for v in a box. */
@@ -128,8 +141,10 @@ static inline void zt_span(double *low, double *high, real3 n, const zt_box *box
 
 /* False only where no ray of a bundle meets a plane: all begin on one side of it, and run away
  * from it or to points on the same side. */
-static inline bool zt_bundle_meets_plane(const zt_bundle *b, real3 n, real distance) {
+static inline bool zt_bundle_meets_plane(zt_depths *at, const zt_bundle *b, real3 n,
+                                         real distance) {
     double low, high, slow, fast;
+    *at = (zt_depths){0, INFINITY};
     zt_span(&low, &high, n, &b->origins);
     double room = (double)((zt_box_size(&b->origins) + real_abs(distance)) *
                            (BOX_ROUNDINGS * REAL_ROUNDING));
@@ -142,7 +157,13 @@ static inline bool zt_bundle_meets_plane(const zt_bundle *b, real3 n, real dista
     }
     zt_span(&slow, &fast, n, &b->directions);
     const double still = (double)(BOX_ROUNDINGS * REAL_ROUNDING);
-    return below ? !(fast < -still) : !(slow > still);
+    /* How far off it the rays begin, and how fast they come nearer. */
+    double least = (below ? (double)distance - high : low - (double)distance) - room;
+    double most = (below ? (double)distance - low : high - (double)distance) + room;
+    double slowest = (below ? slow : -fast) - still, fastest = (below ? fast : -slow) + still;
+    if (fastest > 0) at->near = least / fastest;
+    if (slowest > 0) at->far = most / slowest;
+    return !(fastest < 0);
 }
 
 #endif

@@ -154,43 +154,65 @@ static void forget_places(zt_points *p) {
     p->source = -1;
 }
 
-static void trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
-                  void *memory) {
-    zt_work *w = memory;
+/* `plain`: the scene is, and only light is asked for: said before the loop, it changes nothing.
+ */
+static inline __attribute__((always_inline)) bool trace_any(zt_radiance *light,
+                                                            const zt_tracer *tracer,
+                                                            const zt_rays *given, zt_work *w,
+                                                            const bool plain) {
     memset(light->r, 0, sizeof light->r);
     memset(light->g, 0, sizeof light->g);
     memset(light->b, 0, sizeof light->b);
-    if (given->wants_path) memset(light->path, 0, sizeof light->path);
+    zt_footprint *footprint = plain ? NULL : given->footprint;
+    const bool wants_path = !plain && given->wants_path;
+    const bool everything = !plain && tracer->everything;
+    const bool whole = wants_path || everything;
+    if (wants_path) memset(light->path, 0, sizeof light->path);
     begin(w, tracer, given);
-    const bool whole = given->wants_path || tracer->everything;
-    if (tracer->everything) forget_places(&w->points);
+    light->counts.batches++;
+    if (everything) forget_places(&w->points);
     for (int32_t depth = 0; w->rays.count > 0; depth++) {
         zt_bundle bundle = {.origins = w->points.places,
                             .directions = w->directions,
                             .source = w->points.source};
         *(depth == 0 ? &light->counts.primary : &light->counts.mirror) += w->rays.count;
-        intersect(&w->rays, &bundle, tracer);
+        bool any = intersect(&w->rays, &bundle, tracer);
         if (given->wants_cover && depth == 0) deliver_cover(light, w);
-        if (given->footprint) zt_tread_rays(given->footprint, depth, &bundle, &w->rays, tracer);
-        keep_hits(w, tracer);
-        if (w->rays.count == 0) return;
-        if (given->wants_path) begin_paths(w);
+        if (footprint) zt_tread_rays(footprint, depth, &bundle, &w->rays, tracer);
+        if (any) keep_hits(w, tracer);
+        if (!any || w->rays.count == 0) {
+            light->counts.bare_batches += depth == 0;
+            return depth > 0;
+        }
+        if (wants_path) begin_paths(w);
         find_points(&w->points, &w->rays, tracer);
-        if (tracer->everything) forget_places(&w->points);
-        if (given->footprint || given->wants_path) spread(&w->points);
-        if (given->footprint)
-            zt_tread_points(given->footprint, depth, &w->points, tracer, given->outline);
-        light_points(w, &light->counts, tracer, given, depth);
+        if (everything) forget_places(&w->points);
+        if (footprint || wants_path) spread(&w->points);
+        if (footprint) zt_tread_points(footprint, depth, &w->points, tracer, given->outline);
+        int traced = light_points(w, &light->counts, tracer, given, depth);
         deliver(light, w);
-        if (given->wants_path) deliver_paths(light, w);
+        if (wants_path) deliver_paths(light, w);
         int count = w->rays.count;
         if (depth < tracer->reflection_depth)
             go_on(w, light, tracer, depth >= tracer->faint_depth && !whole);
         else
             w->rays.count = 0;
         if (depth < tracer->asked_depth) light->counts.mirror_avoided += count - w->rays.count;
+        if (depth == 0 && w->points.flat && traced + w->rays.count == 0)
+            light->counts.flat_batches++;
     }
+    return true;
 }
 
-const zt_kernel ZT_KERNEL_NAME(zt_kernel) = {trace, ZT_KERNEL_NAME(zt_work_probe),
+static bool trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
+                  void *memory) {
+    return trace_any(light, tracer, given, memory, false);
+}
+
+static bool trace_plain(zt_radiance *light, const zt_tracer *tracer, const zt_rays *given,
+                        void *memory) {
+    return trace_any(light, tracer, given, memory, true);
+}
+
+const zt_kernel ZT_KERNEL_NAME(zt_kernel) = {trace, trace_plain, ZT_KERNEL_NAME(zt_work_probe),
                                              sizeof(zt_work)};

@@ -97,53 +97,92 @@ void ZT_KERNEL_NAME(zt_meet_lanes)(zt_batch *rays, const zt_tracer *tracer, int3
         lanes_loops[p->kind](rays, rays->from, p, index, first, tracer->tie);
 }
 
-/* Whether a primitive can be met by a ray of a bundle. What all rays leave, and none inwards,
- * is not met again unless it bulges inwards. */
-static bool may_meet(const zt_bundle *b, const zt_primitive *p, int32_t index) {
+/* Whether a primitive can be met by a ray of a bundle, and where. What all rays leave, and none
+ * inwards, is not met again unless it bulges inwards. */
+static bool may_meet(zt_depths *at, const zt_bundle *b, const zt_primitive *p, int32_t index) {
     bool bulges = p->kind == ZT_PRIMITIVE_TORUS || p->kind == ZT_PRIMITIVE_MESH;
     if (b->source == index && !bulges) return false;
+    *at = (zt_depths){0, INFINITY};
     if (p->kind == ZT_PRIMITIVE_PLANE && p->poses) return true;
     return p->kind == ZT_PRIMITIVE_PLANE
-               ? zt_bundle_meets_plane(b, p->plane.normal, p->plane.distance)
-               : zt_bundle_meets(b, &p->box, p->stretch);
+               ? zt_bundle_meets_plane(at, b, p->plane.normal, p->plane.distance)
+               : zt_bundle_meets_at(at, b, &p->box, p->stretch);
 }
 
 bool ZT_KERNEL_NAME(zt_may_meet)(zt_bundle *b, const zt_tracer *tracer) {
+    zt_depths unused;
     for (; b->passed_count < tracer->single_count; b->passed_count++) {
         int32_t index = tracer->single[b->passed_count];
-        if (may_meet(b, &tracer->primitives[index], index)) return true;
+        if (may_meet(&unused, b, &tracer->primitives[index], index)) return true;
     }
     return tracer->crowd_count > 0;
 }
 
-void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
+enum { MEETINGS_MAX = 64 };
+
+/* Things that a bundle may meet, and how near. */
+typedef struct meetings {
+    int32_t index[MEETINGS_MAX];
+    double near[MEETINGS_MAX];
+    int count;
+    double far; /* by there all rays have met one of them or of those before */
+} meetings;
+
+/* Lists things that are asked one by one, as many as there is room for; returns the first one
+ * that is left. */
+static int32_t list_meetings(meetings *m, const zt_bundle *bundle, const zt_tracer *tracer,
+                             int32_t k) {
+    m->count = 0;
+    for (; k < tracer->single_count && m->count < MEETINGS_MAX; k++) {
+        int32_t index = tracer->single[k];
+        const zt_primitive *p = &tracer->primitives[index];
+        zt_depths at;
+        if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(&at, bundle, p, index)) continue;
+        m->index[m->count] = index;
+        m->near[m->count++] = at.near;
+        m->far = least_of(m->far, at.far);
+    }
+    return k;
+}
+
+bool ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
                                   const zt_tracer *tracer) {
+    const double behind = 1 + 0x1p-10;
+    meetings m;
     int padded = zt_batch_padded(rays->count);
     for (int i = 0; i < padded; i++) {
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
     }
     if (tracer->crowd_count > 0) memset(rays->close, 0, sizeof rays->close);
-    for (int32_t k = 0; k < tracer->single_count; k++) {
-        int32_t index = tracer->single[k];
-        const zt_primitive *p = &tracer->primitives[index];
-        if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;
-        if (p->poses)
-            ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, index, 0, padded, false);
-        else
-            nearest_loops[p->kind](rays, rays->from, p, index, padded, tracer->tie);
+    bool any = tracer->placed_count > 0 || tracer->crowd_count > 0;
+    const bool searches = any;
+    m.far = INFINITY;
+    for (int32_t k = 0; k < tracer->single_count;) {
+        k = list_meetings(&m, bundle, tracer, k);
+        any |= m.count > 0;
+        for (int i = 0; i < m.count; i++) {
+            const zt_primitive *p = &tracer->primitives[m.index[i]];
+            /* Where nothing lies on anything else, what is behind another thing is not met. */
+            if (tracer->tie == 0 && m.near[i] > m.far * behind) continue;
+            if (p->poses)
+                ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, m.index[i], 0, padded, false);
+            else
+                nearest_loops[p->kind](rays, rays->from, p, m.index[i], padded, tracer->tie);
+        }
     }
-    if (tracer->placed_count > 0 || tracer->crowd_count > 0)
-        ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer);
+    if (searches) ZT_KERNEL_NAME(zt_search_nearest)(rays, bundle, tracer);
+    return any;
 }
 
 void ZT_KERNEL_NAME(zt_occlude)(zt_batch *rays, const zt_bundle *bundle,
                                 const zt_tracer *tracer) {
+    zt_depths unused;
     int padded = zt_batch_padded(rays->count);
     for (int32_t k = bundle->passed_count; k < tracer->single_count; k++) {
         int32_t index = tracer->single[k];
         const zt_primitive *p = &tracer->primitives[index];
-        if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(bundle, p, index)) continue;
+        if (p->kind == ZT_PRIMITIVE_MESH || !may_meet(&unused, bundle, p, index)) continue;
         if (p->poses)
             ZT_KERNEL_NAME(zt_meet_moving)(rays, tracer, index, 0, padded, true);
         else

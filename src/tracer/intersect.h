@@ -8,8 +8,9 @@
 
 /* The nearest hit of each ray (origins, directions and count given) of a bundle: sets t, hit
  * and part; hit is -1 and t infinite where there is none. Of hits that are as near as roundings
- * can tell the first object's counts. */
-void ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
+ * can tell the first object's counts. Returns false where the bundle already says that there is
+ * nothing to meet. */
+bool ZT_KERNEL_NAME(zt_intersect)(zt_batch *rays, const zt_bundle *bundle,
                                   const zt_tracer *tracer);
 
 /* Whether something lies between origin and t (given), and not at t itself as far as roundings

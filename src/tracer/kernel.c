@@ -78,6 +78,7 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
                   : zt_prepare_search_double(tracer, meshes, arena));
     single ? zt_prepare_ready_single(ready, tracer) : zt_prepare_ready_double(ready, tracer);
     ready->kernel = select_kernel(ready->precision);
+    ready->plain = !ready->moves && !all;
     return ZT_OK;
 }
 

@@ -44,10 +44,12 @@ typedef struct zt_rays {
 
 /* How many rays of each kind were traced; and how many were not, of all that there are where
  * from each point one goes to each lamp and, up to the scene's depth, a mirrored one goes on.
- */
+ * And how many batches that took, how many of these met nothing, and how many only one flat
+ * thing that nothing shadows and that does not reflect. */
 typedef struct zt_ray_counts {
     int64_t primary, shadow, mirror;
     int64_t primary_avoided, shadow_avoided, mirror_avoided;
+    int64_t batches, bare_batches, flat_batches;
 } zt_ray_counts;
 
 static inline void zt_ray_counts_add(zt_ray_counts *sum, const zt_ray_counts *counts) {
@@ -57,6 +59,9 @@ static inline void zt_ray_counts_add(zt_ray_counts *sum, const zt_ray_counts *co
     sum->primary_avoided += counts->primary_avoided;
     sum->shadow_avoided += counts->shadow_avoided;
     sum->mirror_avoided += counts->mirror_avoided;
+    sum->batches += counts->batches;
+    sum->bare_batches += counts->bare_batches;
+    sum->flat_batches += counts->flat_batches;
 }
 
 /* Linear light for each ray. */
@@ -100,9 +105,16 @@ typedef struct zt_probe {
 
 typedef struct zt_tracer zt_tracer;
 
+/* Follows rays; returns false where none met anything, so that all light is 0. */
+typedef bool zt_trace(zt_radiance *light, const zt_tracer *tracer, const zt_rays *rays,
+                      void *work);
+
 /* What there is once for each width of instructions and each precision. */
 typedef struct zt_kernel {
-    void (*trace)(zt_radiance *light, const zt_tracer *tracer, const zt_rays *rays, void *work);
+    zt_trace *trace;
+    /* The same without what most frames miss: for scenes that are plain (zt_ready), and rays of
+     * which neither path nor footprint is asked for. */
+    zt_trace *trace_plain;
     void (*probe)(const zt_tracer *tracer, zt_probe *probes, int count, void *work);
     size_t work_size; /* of what a thread works with, aligned to 64 bytes */
 } zt_kernel;
@@ -116,6 +128,7 @@ typedef struct zt_ready {
      * than double, where that was chosen. */
     zt_accuracy accuracy, beyond;
     zt_needs needs;
+    bool plain;  /* nothing moves while the shutter is open, and not everything is done */
     bool moves;  /* something moves while the shutter is open, the camera left aside */
     bool random; /* there are lamps with a size: light is a mean over random numbers */
 } zt_ready;

@@ -208,7 +208,7 @@ static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_rays *giv
     return traced;
 }
 
-void ZT_KERNEL_NAME(zt_work_light)(zt_work *w, zt_ray_counts *counts, const zt_tracer *tracer,
+int ZT_KERNEL_NAME(zt_work_light)(zt_work *w, zt_ray_counts *counts, const zt_tracer *tracer,
                                    const zt_rays *given, int32_t depth) {
     int traced = 0;
     add_ambient(w, tracer);
@@ -218,4 +218,5 @@ void ZT_KERNEL_NAME(zt_work_light)(zt_work *w, zt_ray_counts *counts, const zt_t
             traced += light_by(w, tracer, i, given, depth);
     counts->shadow += traced;
     counts->shadow_avoided += (int64_t)w->points.count * tracer->lamp_count - traced;
+    return traced;
 }

@@ -32,11 +32,12 @@ static void go_to_ends(zt_points *restrict w, const zt_batch *restrict rays,
     }
 }
 
-/* The looks of point k; the normal, and the corrected position, where its kind is one of which
- * a zt_surface says all. A row of zeros leaves the position as it is. Normals of what is not
- * bent are unit as they are: `flat` says that before the loop, and changes nothing. */
+/* The looks of point k, if it is on that surface; the normal, and the corrected position, where
+ * its kind is one of which a zt_surface says all. A row of zeros leaves the position as it is.
+ * Normals of what is not bent are unit as they are: `flat` says that before the loop, and
+ * changes nothing. */
 static inline void find_surface(zt_points *restrict w, zt_origins *restrict from, int k,
-                                const zt_surface *s, bool flat) {
+                                const zt_surface *s, bool flat, bool on) {
     real qx = from->x[k] - s->center.x, qy = from->y[k] - s->center.y,
          qz = from->z[k] - s->center.z;
     real nx = s->normal.x, ny = s->normal.y, nz = s->normal.z;
@@ -51,37 +52,63 @@ static inline void find_surface(zt_points *restrict w, zt_origins *restrict from
         nz *= unit;
     }
     real off = real_dot(nx, ny, nz, qx, qy, qz) - s->level;
-    from->x[k] -= off * nx;
-    from->y[k] -= off * ny;
-    from->z[k] -= off * nz;
+    from->x[k] = on ? from->x[k] - off * nx : from->x[k];
+    from->y[k] = on ? from->y[k] - off * ny : from->y[k];
+    from->z[k] = on ? from->z[k] - off * nz : from->z[k];
     from->near[k] = 0;
-    w->nx[k] = nx;
-    w->ny[k] = ny;
-    w->nz[k] = nz;
-    w->color_r[k] = s->color.x;
-    w->color_g[k] = s->color.y;
-    w->color_b[k] = s->color.z;
-    w->reflectivity[k] = s->reflectivity;
-    w->closed[k] = s->closed;
+    w->nx[k] = on ? nx : w->nx[k];
+    w->ny[k] = on ? ny : w->ny[k];
+    w->nz[k] = on ? nz : w->nz[k];
+    w->color_r[k] = on ? s->color.x : w->color_r[k];
+    w->color_g[k] = on ? s->color.y : w->color_g[k];
+    w->color_b[k] = on ? s->color.z : w->color_b[k];
+    w->reflectivity[k] = on ? s->reflectivity : w->reflectivity[k];
+    w->closed[k] = on ? s->closed : w->closed[k];
 }
 
-/* All points; where they lie on one primitive, as most of a tile's do, nothing is gathered. */
+/* So few things are asked one by one; of more than so many, which each point is on. */
+enum { FEW_SURFACES = 6 };
+
+/* Lists the primitives that points lie on, in order; returns how many they are, or one more
+ * than FEW_SURFACES. */
+static int list_primitives(int32_t *list, const zt_points *restrict w) {
+    int32_t last = -1;
+    for (int count = 0; count <= FEW_SURFACES; count++) {
+        int32_t next = INT32_MAX;
+        for (int k = 0; k < w->count; k++) {
+            int32_t own = w->primitive[k] > last ? w->primitive[k] : INT32_MAX;
+            next = own < next ? own : next;
+        }
+        if (next == INT32_MAX) return count;
+        list[count] = last = next;
+    }
+    return FEW_SURFACES + 1;
+}
+
+/* Those of the points that lie on one primitive. */
+static void find_surfaces_on(zt_points *restrict w, zt_origins *restrict from,
+                             const zt_surface *surface, int32_t index) {
+    const zt_surface s = *surface;
+    int padded = zt_batch_padded(w->count);
+    if (s.bend == 0)
+        WIDE_LOOP for (int k = 0; k < padded; k++)
+            find_surface(w, from, k, &s, true, w->primitive[k] == index);
+    else
+        WIDE_LOOP for (int k = 0; k < padded; k++)
+            find_surface(w, from, k, &s, false, w->primitive[k] == index);
+}
+
+/* All points; where they lie on few primitives, as most of a tile's do, nothing is gathered. */
 static void find_surfaces(zt_points *restrict w, zt_origins *restrict from,
                           const zt_tracer *tracer) {
-    int32_t first = w->primitive[0], others = 0;
-    int padded = zt_batch_padded(w->count);
-    for (int k = 0; k < w->count; k++) others |= w->primitive[k] ^ first;
-    w->source = others ? -1 : first;
-    if (others) {
+    int32_t list[FEW_SURFACES + 1];
+    int padded = zt_batch_padded(w->count), count = list_primitives(list, w);
+    w->source = count == 1 ? list[0] : -1;
+    for (int i = 0; i < count && count <= FEW_SURFACES; i++)
+        find_surfaces_on(w, from, &tracer->surfaces[list[i]], list[i]);
+    if (count > FEW_SURFACES)
         WIDE_LOOP for (int k = 0; k < padded; k++)
-            find_surface(w, from, k, &tracer->surfaces[w->primitive[k]], false);
-        return;
-    }
-    const zt_surface only = tracer->surfaces[first];
-    if (only.bend == 0)
-        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, true);
-    else
-        WIDE_LOOP for (int k = 0; k < padded; k++) find_surface(w, from, k, &only, false);
+            find_surface(w, from, k, &tracer->surfaces[w->primitive[k]], false, true);
 }
 
 /* A bit for each kind of primitive that points lie on, if it stands still. */

@@ -99,8 +99,8 @@ static inline void mirror_ray(zt_batch *rays, int k, real nx, real ny, real nz) 
 void ZT_KERNEL_NAME(zt_work_shine)(zt_work *work, const zt_tracer *tracer, int32_t index,
                                    bool hidden, const zt_rays *given, int32_t depth);
 
-/* Sums up the light at the points. */
-void ZT_KERNEL_NAME(zt_work_light)(zt_work *work, zt_ray_counts *counts,
+/* Sums up the light at the points; returns how many shadow rays that took. */
+int ZT_KERNEL_NAME(zt_work_light)(zt_work *work, zt_ray_counts *counts,
                                    const zt_tracer *tracer, const zt_rays *given,
                                    int32_t depth);
 
