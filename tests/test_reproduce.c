@@ -164,13 +164,13 @@ static void refusals(void **state) {
     zoetrope_succeeds("render film.yaml --frames 3 -o a.exr");
     zoetrope_succeeds("render film.yaml --frames 3 -o a.jpg");
     write_with_settings("far/a.exr", "a.exr",
-                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 1\", \"size\": [64, 36], "
+                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 2\", \"size\": [64, 36], "
                         "\"min\": 1, \"max\": 1, \"filter\": \"box\", \"seed\": 0, "
                         "\"precision\": \"auto\", \"view\": \"srgb\"}");
     write_with_settings("broken.exr", "a.exr", "{\"zoetrope\": 1, \"size\": 7}");
     write_with_settings("nothing.exr", "a.exr", NULL);
     write_with_settings("small.exr", "a.exr",
-                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 1\", \"size\": [64, 35], "
+                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 2\", \"size\": [64, 35], "
                         "\"min\": 1, \"max\": 1, \"filter\": \"box\", \"seed\": 0, "
                         "\"precision\": \"auto\", \"view\": \"srgb\"}");
     write_with_settings("later.exr", "a.exr",

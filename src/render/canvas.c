@@ -19,11 +19,12 @@ static zt_status allocate(zt_canvas *canvas, size_t count) {
     canvas->round = calloc(count, sizeof *canvas->round);
     canvas->goes_on = calloc(count, sizeof *canvas->goes_on);
     canvas->error = calloc(count, sizeof *canvas->error);
+    canvas->step = calloc(count, sizeof *canvas->step);
     canvas->path = calloc(count, sizeof *canvas->path);
     canvas->least = calloc(count, sizeof *canvas->least);
     canvas->edge = calloc(count, sizeof *canvas->edge);
     bool all = canvas->slots && canvas->waiting && canvas->round && canvas->goes_on &&
-               canvas->error && canvas->path && canvas->least && canvas->edge;
+               canvas->error && canvas->step && canvas->path && canvas->least && canvas->edge;
     for (size_t i = 0; all && i < count; i++) canvas->error[i] = NO_ESTIMATE;
     return all ? ZT_OK : ZT_EMEMORY;
 }
@@ -58,6 +59,7 @@ void zt_canvas_close(zt_canvas *canvas) {
     free(canvas->round);
     free(canvas->goes_on);
     free(canvas->error);
+    free(canvas->step);
     free(canvas->path);
     free(canvas->least);
     free(canvas->edge);
@@ -108,7 +110,8 @@ void zt_canvas_mean(double mean[4], const zt_canvas_sum *positive,
     mean[3] = count ? a / count : 0;
 }
 
-float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum negative[2]) {
+float zt_canvas_estimate(float *step, const zt_canvas_sum positive[2],
+                         const zt_canvas_sum negative[2]) {
     double r = 0, g = 0, b = 0, a = 0, square = 0, count[2], mean[2][4];
     for (int i = 0; i < 2; i++) {
         const zt_canvas_sum *p = &positive[i], *n = &negative[i];
@@ -119,6 +122,7 @@ float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum ne
         square += p->square + n->square;
         count[i] = p->taken + n->taken;
     }
+    *step = 0;
     if (count[0] == 0 || count[1] == 0) return 0;
     double all = count[0] + count[1];
     /* all - 1 times the variance */
@@ -130,26 +134,37 @@ float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum ne
         apart += (k < 3 ? 1 : 3) * (mean[0][k] - mean[1][k]) * (mean[0][k] - mean[1][k]);
     apart *= count[0] * count[1] / (all * all);
     double left = spread / ((all - 1) * all * sqrt(all));
+    *step = (float)(left / 3);
     return (float)((apart > left ? apart : left) / 3);
 }
 
-/* Adds up a row of three estimates by their weights 1 2 1. */
-static void add_row(float *sum, float *weights, const float error[3], float weight) {
-    for (int k = 0; k < 3; k++) {
-        float own = error[k] < 0 ? 0 : k == 1 ? 2 * weight : weight;
-        *sum += own > 0 ? own * error[k] : 0;
-        *weights += own;
-    }
+/* Of pixels around one, by their weights 1 2 1. */
+typedef struct around {
+    float error, step, weight;
+} around;
+
+static void add_pixel(around *sum, const zt_canvas *canvas, size_t pixel, float weight) {
+    bool counts = canvas->error[pixel] >= 0;
+    sum->error += counts ? weight * canvas->error[pixel] : 0;
+    sum->step += counts ? weight * canvas->step[pixel] : 0;
+    sum->weight += counts ? weight : 0;
 }
 
-float zt_canvas_error(const zt_canvas *canvas, int32_t column, int32_t row) {
-    float sum = 0, weights = 0;
-    for (int y = row - 1; y <= row + 1; y++) {
-        if (y < 0 || y >= canvas->height) continue;
-        const float *error = &canvas->error[zt_canvas_pixel(canvas, column, y)];
-        float near[3] = {column > 0 ? error[-1] : NO_ESTIMATE, error[0],
-                         column + 1 < canvas->width ? error[1] : NO_ESTIMATE};
-        add_row(&sum, &weights, near, y == row ? 2 : 1);
+float zt_canvas_error(const zt_canvas *canvas, const zt_slot *slot) {
+    const int32_t x = slot->column, y = slot->row;
+    around sum = {0, 0, 0};
+    for (int32_t row = y - 1; row <= y + 1; row++) {
+        if (row < 0 || row >= canvas->height) continue;
+        float weight = row == y ? 2 : 1;
+        size_t pixel = zt_canvas_pixel(canvas, x, row);
+        if (x > 0) add_pixel(&sum, canvas, pixel - 1, weight);
+        add_pixel(&sum, canvas, pixel, 2 * weight);
+        if (x + 1 < canvas->width) add_pixel(&sum, canvas, pixel + 1, weight);
     }
-    return weights > 0 ? sum / weights : NO_ESTIMATE;
+    if (!(sum.weight > 0)) return NO_ESTIMATE;
+    if (!(sum.step > 0)) return 0;
+    if (isinf(sum.error)) return sum.error;
+    float shared = fminf(2 / sqrtf((float)slot->asked), 1);
+    float own = canvas->step[zt_canvas_pixel(canvas, x, y)] / sum.step;
+    return sum.error * ((1 - shared) * own + shared / sum.weight);
 }

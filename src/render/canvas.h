@@ -43,7 +43,9 @@ typedef struct zt_canvas {
     zt_waiting *waiting;     /* the slots that take further samples */
     int32_t *round;          /* those that do so now */
     bool *goes_on;           /* for each of the round */
-    float *error;            /* plane: the estimated squared error; negative: there is none */
+    /* Planes: the squared error as a pixel's own samples have it, negative: not known; and what
+     * it would be of a step through the pixel. */
+    float *error, *step;
     /* Where edges were looked for: planes of what a ray through the pixel's middle saw; of
      * whether it is at an edge; and of the number of samples that a pixel takes at least, as
      * its logarithm, 0 for that one. */
@@ -97,13 +99,16 @@ void zt_canvas_mean(double mean[4], const zt_canvas_sum *positive,
 
 /* The squared standard error of the mean of all samples of two independent sets, on average of
  * red, green and blue, with that of alpha, which is one of each over white: from the difference
- * of their means; but no less than what the points of samples, which are well spread, leave of
- * a step's variance: a share of n^(-3/2) for n samples. Halves that are both well spread often
- * agree on a step through the pixel, and both be wrong. */
-float zt_canvas_estimate(const zt_canvas_sum positive[2], const zt_canvas_sum negative[2]);
+ * of their means; but no less than `step`, what the points of samples, which are well spread,
+ * leave of a step's variance: a share of n^(-3/2) for n samples. Halves that are both well
+ * spread often agree on a step through the pixel, and both be wrong. */
+float zt_canvas_estimate(float *step, const zt_canvas_sum positive[2],
+                         const zt_canvas_sum negative[2]);
 
-/* The squared error of a pixel, averaged with its neighbours as far as there are estimates, so
- * that two halves that agree by luck do not count for much. Negative where there is none. */
-float zt_canvas_error(const zt_canvas *canvas, int32_t column, int32_t row);
+/* The squared error of a slot's pixel. How much larger errors are than those of steps is that
+ * of all pixels around, so that two halves that agree by luck do not count for much. How much
+ * its samples differ is its own the more, the more they are: few may all have missed what is
+ * next to it. Negative where there is none. */
+float zt_canvas_error(const zt_canvas *canvas, const zt_slot *slot);
 
 #endif

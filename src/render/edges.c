@@ -6,8 +6,9 @@
 #include "tracer/isa.h"
 
 /* Samples at least, as logarithms: where only what is seen differs, and where its color does,
- * too; and rows of a task. */
-enum { PATH_LEAST = 1, COLOR_LEAST = 2, BAND = 16 };
+ * too, by the least of what counts, or more; how many steps of that there are; and rows of a
+ * task. */
+enum { PATH_LEAST = 1, COLOR_LEAST = 2, LEVELS = 3, BAND = 16 };
 
 /* Marks the pixels of a row of which one of the eight neighbours saw something else. Rows above
  * and below the picture are its own. */
@@ -28,11 +29,12 @@ ZT_CLONES static void mark_paths(uint8_t *restrict mark, const uint32_t *restric
 }
 
 /* Marks the pixels of a row whose color, or A, is off the line between those of their
- * neighbours: a step of twice the error, of which a pixel may hold any part, bends it by as
- * much. A slope does not, and its middle is its mean. */
+ * neighbours: a step, of which a pixel may hold any part, bends it by as much. A slope does
+ * not, and its middle is its mean. The larger the step, the more samples there are to be before
+ * it is believed that the pixel has no part of it. */
 ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict above,
                                   const float *restrict row, const float *restrict below,
-                                  int width, float allowed) {
+                                  int width, const float allowed[LEVELS]) {
     enum { CHUNK = 256 };
     int32_t bent[4 * CHUNK] = {0};
     for (int first = 1; first < width - 1; first += CHUNK) {
@@ -41,19 +43,22 @@ ZT_CLONES static void mark_colors(uint8_t *restrict mark, const float *restrict 
         for (int i = 0; i < 4 * count; i++) {
             float across = fabsf(own[i - 4] - 2 * own[i] + own[i + 4]);
             float along = fabsf(up[i] - 2 * own[i] + down[i]);
-            bent[i] = (across > along ? across : along) > allowed;
+            float most = across > along ? across : along;
+            bent[i] = (most > allowed[0]) + (most > allowed[1]) + (most > allowed[2]);
         }
-        for (int i = 0; i < count; i++)
-            mark[first + i] = bent[4 * i] | bent[4 * i + 1] | bent[4 * i + 2] | bent[4 * i + 3]
-                                  ? COLOR_LEAST
-                                  : mark[first + i];
+        for (int i = 0; i < count; i++) {
+            const int32_t *own_bent = &bent[4 * i];
+            int32_t level =
+                max_int(max_int(own_bent[0], own_bent[1]), max_int(own_bent[2], own_bent[3]));
+            mark[first + i] = level ? (uint8_t)(COLOR_LEAST - 1 + level) : mark[first + i];
+        }
     }
 }
 
 typedef struct edges {
     zt_frame *frame;
-    float allowed;
-    int reach; /* pixels by which the filter reaches beyond its own */
+    float allowed[LEVELS]; /* in colors, before there are more samples at least */
+    int reach;             /* pixels by which the filter reaches beyond its own */
 } edges;
 
 /* Where the filter stays within the pixel. */
@@ -129,7 +134,8 @@ void zt_edges_find(zt_frame *f) {
     zt_canvas *canvas = &f->work->canvas;
     const zt_sampling *s = &f->job->sampling;
     int bands = (canvas->height + BAND - 1) / BAND;
-    edges e = {f, (float)(2 * s->error), (int)ceil((zt_filter_width(s) - 1) / 2)};
+    const float error = (float)s->error;
+    edges e = {f, {error / 2, 2 * error, 8 * error}, (int)ceil((zt_filter_width(s) - 1) / 2)};
     memset(canvas->least, 0, (size_t)canvas->width * (size_t)canvas->height);
     if (f->job->thin) zt_thin_mark(canvas->least, f->job->thin, e.reach);
     zt_pool_run(f->pool, bands, mark_band, &e);

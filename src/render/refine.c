@@ -16,19 +16,26 @@
 
 enum { DECISIONS = 4096 }; /* of a task */
 
+/* At edges, a pixel with fewer samples than this is to have as much smaller a squared error. A
+ * picture has the least error for its time where squared errors are as the numbers of samples
+ * are (Neyman, "On the two different aspects of the representative method", 1934). */
+enum { CHEAP = 64 };
+
 static void decide_task(void *user, int task, int worker) {
     (void)worker;
     const zt_round_job *j = user;
     const zt_frame *f = j->frame;
     zt_canvas *canvas = &f->work->canvas;
+    const int enough = f->at_edges ? CHEAP : 1;
     int32_t end = min_int((task + 1) * DECISIONS, canvas->round_count);
     for (int32_t i = task * DECISIONS; i < end; i++) {
         const zt_slot *s = &canvas->slots[canvas->round[i]];
         int least =
             f->at_edges ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
+        float share = fminf((float)s->asked / (float)enough, 1);
         canvas->goes_on[i] =
             s->asked < f->job->sampling.max &&
-            (s->asked < least || zt_canvas_error(canvas, s->column, s->row) > j->wanted);
+            (s->asked < least || zt_canvas_error(canvas, s) > share * j->wanted);
     }
 }
 
@@ -107,7 +114,7 @@ static void write_channels(const zt_canvas *canvas, zt_image *image) {
     for (int32_t i = 0; (samples || error) && i < canvas->slot_count; i++) {
         const zt_slot *s = &canvas->slots[i];
         size_t pixel = zt_canvas_pixel(canvas, s->column, s->row);
-        float estimate = zt_canvas_error(canvas, s->column, s->row);
+        float estimate = zt_canvas_error(canvas, s);
         if (samples) samples[pixel] = (float)s->asked;
         if (error) error[pixel] = estimate < 0 ? -1 : sqrtf(estimate);
     }

@@ -96,7 +96,9 @@ bool zt_rounds_recall(zt_canvas *canvas, int32_t slot, const zt_rounds *r) {
     s->sum = round->sum;
     s->strange = round->strange;
     s->known = next;
-    canvas->error[zt_canvas_pixel(canvas, s->column, s->row)] = round->error;
+    size_t pixel = zt_canvas_pixel(canvas, s->column, s->row);
+    canvas->error[pixel] = round->error;
+    canvas->step[pixel] = round->step;
     if (canvas->negative) canvas->negative[slot] = r->negative[next];
     return true;
 }
@@ -107,10 +109,11 @@ static void keep(zt_rounds *r, zt_canvas *canvas, int32_t slot, uint32_t number)
         s->known = ZT_ROUNDS_LOST;
         return;
     }
-    r->rounds[number] =
-        (zt_round){.sum = s->sum,
-                   .error = canvas->error[zt_canvas_pixel(canvas, s->column, s->row)],
-                   .strange = s->strange};
+    size_t pixel = zt_canvas_pixel(canvas, s->column, s->row);
+    r->rounds[number] = (zt_round){.sum = s->sum,
+                                   .error = canvas->error[pixel],
+                                   .step = canvas->step[pixel],
+                                   .strange = s->strange};
     if (canvas->negative) r->negative[number] = canvas->negative[slot];
     *next_of(r, s) = number;
     s->known = number;

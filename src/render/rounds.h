@@ -12,7 +12,7 @@
 /* A pixel after one of its rounds. */
 typedef struct zt_round {
     zt_canvas_sum sum; /* of the samples that count positively, of all rounds so far */
-    float error;       /* as in zt_canvas */
+    float error, step; /* as in zt_canvas */
     uint32_t next;     /* the number of its next round that is kept, or 0 */
     bool strange;      /* as in zt_slot */
 } zt_round;

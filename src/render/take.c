@@ -156,8 +156,8 @@ static void finish_slot(zt_canvas *canvas, int32_t index, const zt_round_job *j,
         negative[1] = sum_at(&sums->negative[1], i);
         canvas->negative[index] = both(negative[0], negative[1]);
     }
-    canvas->error[zt_canvas_pixel(canvas, slot->column, slot->row)] =
-        zt_canvas_estimate(positive, negative);
+    size_t pixel = zt_canvas_pixel(canvas, slot->column, slot->row);
+    canvas->error[pixel] = zt_canvas_estimate(&canvas->step[pixel], positive, negative);
     slot->sum = both(positive[0], positive[1]);
     slot->asked += j->more;
 }

@@ -11,7 +11,7 @@
 #include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
-const char zt_arithmetic[] = "zoetrope 1";
+const char zt_arithmetic[] = "zoetrope 2";
 
 /* Of all meshes, once: they are the film's, and never change. */
 static zt_status find_held(zt_renderer *r) {
