@@ -72,15 +72,16 @@ enum { FEW_SURFACES = 6 };
 /* Lists the primitives that points lie on, in order; returns how many they are, or one more
  * than FEW_SURFACES. */
 static int list_primitives(int32_t *list, const zt_points *restrict w) {
-    int32_t last = -1;
+    uint32_t begin = 0;
     for (int count = 0; count <= FEW_SURFACES; count++) {
-        int32_t next = INT32_MAX;
+        uint32_t least = UINT32_MAX; /* from there on; those before are beyond all others */
         for (int k = 0; k < w->count; k++) {
-            int32_t own = w->primitive[k] > last ? w->primitive[k] : INT32_MAX;
-            next = own < next ? own : next;
+            uint32_t off = (uint32_t)w->primitive[k] - begin;
+            least = off < least ? off : least;
         }
-        if (next == INT32_MAX) return count;
-        list[count] = last = next;
+        if (least > INT32_MAX) return count;
+        begin += least;
+        list[count] = (int32_t)begin++;
     }
     return FEW_SURFACES + 1;
 }
