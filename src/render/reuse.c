@@ -86,6 +86,17 @@ typedef struct asking {
 
 enum { TILES = 64 }; /* of a task */
 
+/* Which parts of a tile are not touched. Of most tiles none is, which is asked at once. */
+static unsigned still_parts(const zt_footprint *parts, const zt_differences *differences) {
+    zt_footprint all = parts[0];
+    for (int i = 1; i < ZT_REUSE_PARTS; i++) zt_footprint_join(&all, &parts[i]);
+    if (!zt_footprint_touched(&all, differences)) return ZT_REUSE_ALL;
+    unsigned still = 0;
+    for (int i = 0; i < ZT_REUSE_PARTS; i++)
+        still |= (unsigned)!zt_footprint_touched(&parts[i], differences) << i;
+    return still;
+}
+
 static void ask_task(void *user, int task, int worker) {
     (void)worker;
     const asking *a = user;
@@ -93,9 +104,7 @@ static void ask_task(void *user, int task, int worker) {
     for (int tile = task * TILES; tile < end; tile++) {
         const zt_footprint *parts = &a->picture->footprints[tile * ZT_REUSE_PARTS];
         if (a->from[tile] != ZT_TILE_RENDERED) continue;
-        unsigned still = 0;
-        for (int i = 0; i < ZT_REUSE_PARTS; i++)
-            still |= (unsigned)!zt_footprint_touched(&parts[i], a->differences) << i;
+        unsigned still = still_parts(parts, a->differences);
         if (still == ZT_REUSE_ALL) a->from[tile] = (uint8_t)a->source;
         bool by_parts = a->source == ZT_TILE_LAST && parts[ZT_REUSE_PARTS - 1].steps->there;
         if (by_parts) a->still[tile] = (uint8_t)still;

@@ -13,6 +13,34 @@ enum { PLACES_MAX = 32 };
  * roundings of a ray's end, and for the way from there to where further rays begin. */
 #define ROOM 8
 
+void zt_footprint_join(zt_footprint *all, const zt_footprint *f) {
+    for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
+        zt_footstep *to = &all->steps[i];
+        const zt_footstep *from = &f->steps[i];
+        zt_hold_box(&to->origins, &from->origins, !to->there);
+        zt_hold_box(&to->directions, &from->directions, !to->there);
+        if (from->ends) zt_hold_box(&to->points, &from->points, !to->ends);
+        to->there = true;
+        to->ends |= from->ends;
+        to->leaves |= from->leaves;
+    }
+    all->met |= f->met;
+    all->faced |= f->faced;
+    all->lit |= f->lit;
+    all->doubtful |= f->doubtful;
+    all->restless |= f->restless;
+}
+
+static zt_sides sides_of(const zt_bvh_box *box) {
+    zt_sides s = {.size = 0};
+    for (int i = 0; i < 3; i++) {
+        s.low[i] = (double)box->low[i];
+        s.high[i] = (double)box->high[i];
+        s.size = most_of(s.size, most_of(fabs(s.low[i]), fabs(s.high[i])));
+    }
+    return s;
+}
+
 /* ---- what differs ---------------------------------------------------------------------------
  */
 
@@ -129,17 +157,20 @@ zt_status zt_differences_find(zt_differences *d, const zt_outline *before,
     if (!d->places) return ZT_EMEMORY;
     ZT_TRY(add_things(d, before, now, same_numbers, arena));
     share_boxes(d);
+    d->lamps = ZT_PUSH(arena, zt_sides, (size_t)now->lamp_count);
+    if (!d->lamps) return ZT_EMEMORY;
+    for (int32_t i = 0; i < now->lamp_count; i++) d->lamps[i] = sides_of(&now->lamps[i].bounds);
     return add_lamps(d, before, now, same_numbers, arena);
 }
 
 /* ---- what that touches ----------------------------------------------------------------------
  */
 
-static double size_of(const zt_bvh_box *box) {
-    double size = 0;
-    for (int i = 0; i < 3; i++)
-        size = most_of(size, most_of(fabs((double)box->low[i]), fabs((double)box->high[i])));
-    return size;
+/* Room for roundings around a box that ways from one box to another one may meet. */
+static double room_of(const zt_sides *from, const zt_sides *to, const zt_sides *box,
+                      float stretch) {
+    return (from->size + to->size + box->size) * (double)stretch *
+           (double)(ROOM * BOX_ROUNDINGS * REAL_ROUNDING);
 }
 
 /* Narrows the shares of a way, from *low to *high of it, to those where a + share b <= 0; what
@@ -153,19 +184,20 @@ static void cut(double *low, double *high, double a, double b) {
 
 /* False only where no straight way from one box to another one meets a third: after a share s
  * of such a way it is in a box between them, so much from the one's sides to the other's. */
-static bool passes(const zt_bvh_box *from, const zt_bvh_box *to, const zt_bvh_box *box,
-                   float stretch) {
-    double room = (size_of(from) + size_of(to) + size_of(box)) * (double)stretch *
-                  (double)(ROOM * BOX_ROUNDINGS * REAL_ROUNDING);
-    double low = 0, high = 1;
+static bool passes(const zt_sides *from, const zt_sides *to, const zt_sides *box, double room) {
+    double low = 0, high = 1, above[3], below[3], rises[3], falls[3];
     for (int i = 0; i < 3; i++) {
-        double least = (double)from->low[i], most = (double)from->high[i];
-        double above = least - ((double)box->high[i] + room);
-        double below = (double)box->low[i] - room - most;
-        double rises = (double)to->low[i] - least, falls = most - (double)to->high[i];
-        if ((above > 0 && above + rises > 0) || (below > 0 && below + falls > 0)) return false;
-        cut(&low, &high, above, rises);
-        cut(&low, &high, below, falls);
+        above[i] = from->low[i] - (box->high[i] + room);
+        below[i] = box->low[i] - room - from->high[i];
+        rises[i] = to->low[i] - from->low[i];
+        falls[i] = from->high[i] - to->high[i];
+        if ((above[i] > 0 && above[i] + rises[i] > 0) ||
+            (below[i] > 0 && below[i] + falls[i] > 0))
+            return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        cut(&low, &high, above[i], rises[i]);
+        cut(&low, &high, below[i], falls[i]);
     }
     return !(low > high);
 }
@@ -176,20 +208,17 @@ typedef struct reach {
     double radius;
 } reach;
 
-static reach reach_of(const zt_bvh_box *b) {
-    vec3 low = {(double)b->low[0], (double)b->low[1], (double)b->low[2]};
-    vec3 high = {(double)b->high[0], (double)b->high[1], (double)b->high[2]};
+static reach reach_of(const zt_sides *b) {
+    vec3 low = {b->low[0], b->low[1], b->low[2]}, high = {b->high[0], b->high[1], b->high[2]};
     return (reach){vec3_scale(vec3_add(low, high), 0.5), vec3_length(vec3_sub(high, low)) / 2};
 }
 
 /* False only where no such way meets the ball in a box. After a share s of the way it is within
  * radius + s grows of p + s v; how much further from there the ball's middle is, is least at
  * one place, since that is convex. */
-static bool passes_ball(const zt_bvh_box *from, const zt_bvh_box *to, const zt_bvh_box *box,
-                        float stretch) {
+static bool passes_ball(const zt_sides *from, const zt_sides *to, const zt_sides *box,
+                        double room) {
     reach a = reach_of(from), b = reach_of(to), ball = reach_of(box);
-    double room = (size_of(from) + size_of(to) + size_of(box)) * (double)stretch *
-                  (double)(ROOM * BOX_ROUNDINGS * REAL_ROUNDING);
     vec3 v = vec3_sub(b.middle, a.middle), p = vec3_sub(a.middle, ball.middle);
     double grows = b.radius - a.radius, length2 = vec3_dot(v, v), along = vec3_dot(p, v);
     double s = grows > 0 ? 1 : 0, rest = length2 - grows * grows;
@@ -202,36 +231,42 @@ static bool passes_ball(const zt_bvh_box *from, const zt_bvh_box *to, const zt_b
     return !(distance > ball.radius / sqrt(3) + a.radius + s * grows + room);
 }
 
+/* A place, and what there is to say of it for all ways. */
+typedef struct spot {
+    const zt_difference_place *place;
+    zt_sides sides;
+    float stretch;
+} spot;
+
 /* Whether such a way may meet a place. */
-static bool way_meets(const zt_bvh_box *from, const zt_bvh_box *to,
-                      const zt_difference_place *place, float stretch) {
-    return passes(from, to, &place->box, stretch) &&
-           (!place->round || passes_ball(from, to, &place->box, stretch));
+static bool way_meets(const zt_sides *from, const zt_sides *to, const spot *s) {
+    const double room = room_of(from, to, &s->sides, s->stretch);
+    return passes(from, to, &s->sides, room) &&
+           (!s->place->round || passes_ball(from, to, &s->sides, room));
 }
 
 static zt_box box_of(const zt_bvh_box *b) {
     return (zt_box){{b->low[0], b->low[1], b->low[2]}, {b->high[0], b->high[1], b->high[2]}};
 }
 
-/* Whether rays of a step may meet a place. */
-static bool rays_meet(const zt_footstep *step, const zt_difference_place *place,
-                      float stretch) {
-    if (!step->leaves && !way_meets(&step->origins, &step->points, place, stretch))
-        return false;
+/* Whether rays of a step may meet a place; `points` are where they end. */
+static bool rays_meet(const zt_footstep *step, const zt_sides *points, const spot *s) {
+    const zt_sides origins = sides_of(&step->origins);
+    if (!step->leaves && !way_meets(&origins, points, s)) return false;
     zt_bundle bundle = {.origins = box_of(&step->origins),
                         .directions = box_of(&step->directions),
                         .source = -1};
-    zt_box box = box_of(&place->box);
-    return zt_bundle_meets(&bundle, &box, ROOM * stretch);
+    zt_box box = box_of(&s->place->box);
+    return zt_bundle_meets(&bundle, &box, ROOM * s->stretch);
 }
 
 /* Whether the shadow rays of a step's points may meet a place. */
-static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const zt_outline *now,
-                         const zt_difference_place *place, float stretch) {
-    for (int32_t i = 0; i < now->lamp_count; i++) {
-        const zt_outline_lamp *lamp = &now->lamps[i];
+static bool shadows_meet(const zt_footprint *f, const zt_sides *points, const zt_differences *d,
+                         const spot *s) {
+    for (int32_t i = 0; i < d->now->lamp_count; i++) {
+        const zt_outline_lamp *lamp = &d->now->lamps[i];
         if (lamp->shadows && (f->faced & zt_footprint_bit(lamp->place)) &&
-            way_meets(&step->points, &lamp->bounds, place, stretch))
+            way_meets(points, &d->lamps[i], s))
             return true;
     }
     return false;
@@ -239,10 +274,12 @@ static bool shadows_meet(const zt_footprint *f, const zt_footstep *step, const z
 
 static bool place_touches(const zt_footprint *f, const zt_differences *d,
                           const zt_difference_place *place) {
+    const spot s = {place, sides_of(&place->box), d->stretch};
     for (int i = 0; i < ZT_FOOTPRINT_STEPS && f->steps[i].there; i++) {
         const zt_footstep *step = &f->steps[i];
-        if (place->now && rays_meet(step, place, d->stretch)) return true;
-        if (step->ends && shadows_meet(f, step, d->now, place, d->stretch)) return true;
+        const zt_sides points = sides_of(&step->points);
+        if (place->now && rays_meet(step, &points, &s)) return true;
+        if (step->ends && shadows_meet(f, &points, d, &s)) return true;
     }
     return false;
 }

@@ -58,6 +58,9 @@ static inline void zt_hold_box(zt_bvh_box *all, const zt_bvh_box *more, bool fir
     }
 }
 
+/* Grows a footprint by that of further rays. */
+void zt_footprint_join(zt_footprint *all, const zt_footprint *more);
+
 static inline uint64_t zt_footprint_bit(zt_hash of) { return UINT64_C(1) << (of.low >> 58); }
 
 /* ---- of scenes ------------------------------------------------------------------------------
@@ -106,6 +109,11 @@ typedef struct zt_difference_place {
     bool round; /* the ball in the box alone */
 } zt_difference_place;
 
+/* A box in double precision, and the largest size of its coordinates. */
+typedef struct zt_sides {
+    double low[3], high[3], size;
+} zt_sides;
+
 /* What differs between two outlines, the second of which must be there as long. Things and
  * lamps that came or went in between, or stand elsewhere in the order, are told apart from
  * those that are the same: these are asked in the same order as before. */
@@ -120,6 +128,7 @@ typedef struct zt_differences {
     int32_t place_count;
     float stretch; /* the largest of what moved */
     const zt_outline *now;
+    zt_sides *lamps; /* the bounds of its lamps */
 } zt_differences;
 
 /* `same_numbers`: the random numbers of both frames are the same. ZT_EMEMORY. */
