@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "image/stamps.h"
 #include "measure.h"
 #include "sequence/keepsakes.h"
 #include "sequence/renderer.h"
@@ -116,6 +117,8 @@ static frames open_frames(const zt_animation *animation, bool reuses) {
     zt_renderer_close(&f.renderer);
     must_be(zt_renderer_open(&f.renderer, animation, &settings, (zt_listener){0}) == ZT_OK,
             "a renderer");
+    /* As images of films have: a tile that one has already is not copied again. */
+    must_be(zt_image_add_stamps(f.image) == ZT_OK, "stamps");
     return f;
 }
 
