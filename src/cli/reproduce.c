@@ -59,7 +59,8 @@ static void print_difference(const zt_reproduction *r, const char *path,
     printf("the largest difference, %.3g, is at ", r->largest.is - r->largest.was);
     print_deviation(&r->largest);
     if (!r->same_arithmetic)
-        puts("it was rendered by a version of the program that computes other pixels");
+        puts("it was rendered by a version of the program, or on an architecture, that "
+             "computes other pixels");
     else if (!r->same_key)
         printf("what is rendered differs: %s, or what it refers to, has changed since\n",
                description);

@@ -7,11 +7,12 @@
 
 #include "base/diag.h"
 #include "base/hash.h"
+#include "base/machine.h"
 #include "keyframe/animation.h"
 #include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
-const char zt_arithmetic[] = "zoetrope 2";
+const char zt_arithmetic[] = "zoetrope 2 " ZT_MACHINE;
 
 /* Of all meshes, once: they are the film's, and never change. */
 static zt_status find_held(zt_renderer *r) {

@@ -62,8 +62,8 @@ typedef struct zt_taking {
     zt_render_job job;
 } zt_taking;
 
-/* Its version, which becomes another one whenever the same scene comes out with other pixels.
- */
+/* Its version, which becomes another one whenever the same scene comes out with other pixels,
+ * and the machine's architecture. */
 extern const char zt_arithmetic[];
 
 /* Has start whatever frames of the film will need for sure: Embree, where there is a mesh or a
