@@ -215,6 +215,24 @@ static void stretched(void **state) {
     }
 }
 
+/* A fiftieth flat, a cube's axes stand askew where it is turned within its group: roundings
+ * grow by 25 on the way to its own space and back. Where it is not turned they do not. */
+static void askew(void **state) {
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        begin();
+        zt_object *group = scene_object(&s, ZT_SHAPE_GROUP, -1);
+        group->placement = (zt_placement){{0, 0, -5}, {1, 0, 0, 0}, {1, .02, 1}};
+        scene_object(&s, ZT_SHAPE_BOX, 0)->box = (zt_block){
+            {0, 0, 0}, {1, 1, 1}, quat_axis_angle((vec3){0, 0, 1}, turned ? pi / 4 : 0)};
+        s.objects[1].parent = 0;
+        zt_accuracy a = judged();
+        assert_int_equal(a.reason, turned ? ZT_ACCURACY_STRETCH : ZT_ACCURACY_FINE);
+        assert_int_equal(ready_for(ZT_PRECISION_AUTO).precision,
+                         turned ? ZT_PRECISION_DOUBLE : ZT_PRECISION_SINGLE);
+    }
+}
+
 /* A mesh in a group is stretched as solids are. */
 static void stretched_mesh(void **state) {
     (void)state;
@@ -374,6 +392,7 @@ int main(void) {
         cmocka_unit_test(standing),
         cmocka_unit_test(out_of_range),
         cmocka_unit_test(stretched),
+        cmocka_unit_test(askew),
         cmocka_unit_test(stretched_mesh),
         cmocka_unit_test(thin),
         cmocka_unit_test(beyond_double),

@@ -273,32 +273,35 @@ static int32_t leaving(const zt_batch *rays, int i, int32_t index) {
     return source < 0 || source >> 1 != index ? 0 : source & 1 ? -1 : 1;
 }
 
-/* Of what moves, the one number there is comes from the loop that is asked about all. */
-static real moving_distance(const zt_tracer *tracer, int32_t index, const zt_batch *rays,
-                            int i) {
+/* Of what moves, the one number there is comes from the loop that is asked about all: the
+ * nearest, or, of shadow rays, whether there is one. */
+static real moving_distance(const zt_tracer *tracer, int32_t index, const zt_batch *rays, int i,
+                            real near) {
     static zt_batch one;
     int first = i / ZT_BATCH_LANES * ZT_BATCH_LANES;
     one.from = rays->from;
     one.count = rays->count;
     for (int k = first; k < first + ZT_BATCH_LANES; k++) {
         one.dx[k] = rays->dx[k], one.dy[k] = rays->dy[k], one.dz[k] = rays->dz[k];
-        one.t[k] = REAL_INFINITY, one.hit[k] = -1;
+        one.t[k] = near > 0 ? rays->t[k] : REAL_INFINITY, one.hit[k] = -1;
     }
     zt_tracer plain = *tracer;
     plain.tie = 0;
-    ZT_KERNEL_NAME(zt_meet_moving)(&one, &plain, index, first, first + ZT_BATCH_LANES, false);
-    return one.t[i];
+    ZT_KERNEL_NAME(zt_meet_moving)
+    (&one, &plain, index, first, first + ZT_BATCH_LANES, near > 0);
+    return near == 0 ? one.t[i] : one.hit[i] < 0 ? REAL_INFINITY : rays->t[i] / 2;
 }
 
-static real distance_of(const zt_tracer *tracer, int32_t index, const zt_batch *rays, int i) {
+static real distance_of(const zt_tracer *tracer, int32_t index, const zt_batch *rays, int i,
+                        real near) {
     const zt_primitive *p = &tracer->primitives[index];
     const zt_origins *o = rays->from;
     int32_t left = leaving(rays, i, index);
     if (p->kind != ZT_PRIMITIVE_MESH && p->poses)
-        return moving_distance(tracer, index, rays, i);
+        return moving_distance(tracer, index, rays, i, near);
 #define DISTANCE(kind)                                                                         \
     zt_##kind##_distance(p, o->x[i], o->y[i], o->z[i], rays->dx[i], rays->dy[i], rays->dz[i],  \
-                         left)
+                         left, near)
     switch (p->kind) {
     case ZT_PRIMITIVE_PLANE:
         return DISTANCE(plane);
@@ -334,7 +337,7 @@ static void plain_nearest(zt_batch *rays, const stage *st) {
         rays->t[i] = REAL_INFINITY;
         rays->hit[i] = -1;
         for (int32_t p = 0; p < st->tracer->primitive_count; p++) {
-            real t = distance_of(st->tracer, p, rays, i);
+            real t = distance_of(st->tracer, p, rays, i, 0);
             if (t < rays->t[i]) rays->t[i] = t, rays->hit[i] = p;
         }
         if (st->pieces.single_count == 0 || pieces.hit[i] < 0) continue;
@@ -359,8 +362,7 @@ static void plain_any(zt_batch *rays, const stage *st) {
     for (int i = 0; i < rays->count; i++) {
         if (pieces.hit[i] >= 0) rays->hit[i] = INT32_MAX;
         for (int32_t p = 0; p < st->tracer->primitive_count; p++) {
-            real t = distance_of(st->tracer, p, rays, i);
-            real near = rays->from->near[i];
+            real near = rays->from->near[i], t = distance_of(st->tracer, p, rays, i, near);
             if (t > near && t * (1 + TIE) + near < rays->t[i]) rays->hit[i] = p;
         }
     }

@@ -37,7 +37,7 @@ typedef struct ray {
 static ray ray_from(vec3 o, vec3 d) { return (ray){real_vec(o), real_vec(d)}; }
 
 static real meet(const zt_primitive *p, ray r, int32_t leaving) {
-#define MEET(kind) zt_##kind##_distance(p, r.o.x, r.o.y, r.o.z, r.d.x, r.d.y, r.d.z, leaving)
+#define MEET(kind) zt_##kind##_distance(p, r.o.x, r.o.y, r.o.z, r.d.x, r.d.y, r.d.z, leaving, 0)
     switch (p->kind) {
     case ZT_PRIMITIVE_PLANE:
         return MEET(plane);

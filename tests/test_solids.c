@@ -31,15 +31,17 @@ typedef struct batch {
     real nx[WIDE], ny[WIDE], nz[WIDE], off[WIDE];
 } batch;
 
+static const zt_rows own = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
 #define LOOPS(kind)                                                                            \
     __attribute__((noinline)) static void meet_##kind(batch *restrict b, real p0, real p1) {   \
         for (int i = 0; i < WIDE; i++)                                                         \
             b->t[i] = zt_##kind##_meet(b->fx[i], b->fy[i], b->fz[i], b->ex[i], b->ey[i],       \
-                                       b->ez[i], p0, p1, b->leaving[i]);                       \
+                                       b->ez[i], p0, p1, b->leaving[i], 0);                    \
     }                                                                                          \
     static void surface_##kind(batch *restrict b, real p0, real p1) {                          \
         for (int i = 0; i < WIDE; i++) {                                                       \
-            zt_face f = zt_##kind##_surface(b->fx[i], b->fy[i], b->fz[i], p0, p1);             \
+            zt_face f = zt_##kind##_surface(b->fx[i], b->fy[i], b->fz[i], p0, p1, &own);       \
             b->nx[i] = f.nx, b->ny[i] = f.ny, b->nz[i] = f.nz, b->off[i] = f.off;              \
         }                                                                                      \
     }

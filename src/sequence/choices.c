@@ -50,7 +50,7 @@ static void say_why(char *text, size_t size, const zt_accuracy *a, zt_precision 
     case ZT_ACCURACY_STRETCH:
         snprintf(text, size,
                  "%s is stretched %.3g times more one way than another, and %s precision "
-                 "has no digits left for it",
+                 "has too few digits for it",
                  name, a->number, digits);
         break;
     case ZT_ACCURACY_THIN:

@@ -20,12 +20,14 @@ typedef struct digits {
                      arithmetic: subtraction from the camera, intersection and projection
                      together stay below 16 roundings */
     double stretch;        /* what is stretched more has no digits left (tests/extremes) */
+    double askew;          /* nor has what is more so: where a rounding becomes 1e-6; in double
+                              precision nothing that was drawn came near to where it matters */
     double largest, least; /* squares of larger numbers, or of smaller ones, leave the range */
     int32_t mirrors; /* after so many the roundings of each add up to what one surface's are */
 } digits;
 #define WRONG (16 * 0x1p-24)
-static const digits single_digits = {WRONG, 1e3, 1e15, 1e-15, 64},
-                    double_digits = {16 * 0x1p-53, 1e12, 1e40, 1e-40, INT32_MAX};
+static const digits single_digits = {WRONG, 1e3, 0x1p24 * 1e-6, 1e15, 1e-15, 64},
+                    double_digits = {16 * 0x1p-53, 1e12, INFINITY, 1e40, 1e-40, INT32_MAX};
 
 /* Surfaces that are nearer to each other than what is wrong, and yet not the same as far as
  * double precision can tell. Looked for among so many at most. */
@@ -41,7 +43,7 @@ static zt_accuracy judge_one(const zt_extent *e, zt_pixel pixel, const digits *d
                      .seen = SEEN * (pixel.width + pixel.angle * near),
                      .distance = near,
                      .number = grain > wrong ? grain / ZT_GRAIN : size};
-    if (!(e->stretch < d->stretch)) {
+    if (!(e->stretch < d->stretch) || e->askew > d->askew) {
         a.reason = ZT_ACCURACY_STRETCH;
         a.number = e->stretch;
     } else if (!(size < d->largest) || e->least < d->least) {

@@ -12,16 +12,16 @@
  * hits of some lanes, in any order of primitives. Where things lie on each other (tie > 0), a
  * later primitive's hit counts where it is nearer by more than roundings, and an earlier one's
  * where the later one's is not: of two the same one counts in either order. */
-#define DISTANCE(kind, i)                                                                      \
+#define DISTANCE(kind, i, near)                                                                \
     zt_##kind##_distance(&own, from->x[i], from->y[i], from->z[i], rays->dx[i], rays->dy[i],   \
-                         rays->dz[i], zt_leaving(from->source[i], index))
+                         rays->dz[i], zt_leaving(from->source[i], index), near)
 #define DEFINE_LOOPS(kind)                                                                     \
     static void kind##_nearest(zt_batch *restrict rays, const zt_origins *restrict from,       \
                                const zt_primitive *p, int32_t index, int count, real tie) {    \
         const zt_primitive own = *p;                                                           \
         const real more = 1 + tie, share = tie / TIE;                                          \
         WIDE_LOOP for (int i = 0; i < count; i++) {                                            \
-            real t = DISTANCE(kind, i), nearest = rays->t[i];                                  \
+            real t = DISTANCE(kind, i, 0), nearest = rays->t[i];                               \
             int32_t hit = rays->hit[i];                                                        \
             bool nearer = t * more + share * from->near[i] < nearest;                          \
             rays->t[i] = nearer ? t : nearest;                                                 \
@@ -32,7 +32,7 @@
                            const zt_primitive *p, int32_t index, int first, int end) {         \
         const zt_primitive own = *p;                                                           \
         WIDE_LOOP for (int i = first; i < end; i++) {                                          \
-            real t = DISTANCE(kind, i), near = from->near[i];                                  \
+            real near = from->near[i], t = DISTANCE(kind, i, near);                            \
             int32_t hit = rays->hit[i];                                                        \
             rays->hit[i] = ((t > near) & (t * (1 + TIE) + near < rays->t[i])) ? 0 : hit;       \
         }                                                                                      \
@@ -42,7 +42,7 @@
         const zt_primitive own = *p;                                                           \
         const real more = 1 + tie, share = tie / TIE;                                          \
         WIDE_LOOP for (int i = first; i < first + ZT_BATCH_LANES; i++) {                       \
-            real t = DISTANCE(kind, i), nearest = rays->t[i], near = share * from->near[i];    \
+            real t = DISTANCE(kind, i, 0), nearest = rays->t[i], near = share * from->near[i]; \
             int32_t hit = rays->hit[i], later = index > hit;                                   \
             int32_t before = t * more + near < nearest, after = nearest * more + near < t;     \
             int32_t no_later = (t < REAL_INFINITY) & (after == 0);                             \

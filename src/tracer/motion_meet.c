@@ -8,24 +8,25 @@
 #define RAY      from->x[i], from->y[i], from->z[i], rays->dx[i], rays->dy[i], rays->dz[i]
 #define POINT(n) ((real3){s->of[n][j], s->of[n + 1][j], s->of[n + 2][j]})
 
-/* How ray i meets what has the poses number j in `s`; how it leaves its surface as it is for
- * what stands still. */
-#define plane_MEET  zt_plane_meet(POINT(0), s->of[3][j], RAY, left)
-#define sphere_MEET zt_sphere_meet(POINT(0), s->of[3][j], RAY, left)
+/* How ray i meets what has the poses number j in `s`, further on than `least`; how it leaves
+ * its surface as it is for what stands still. */
+#define plane_MEET  zt_plane_meet(POINT(0), s->of[3][j], RAY, left, least)
+#define sphere_MEET zt_sphere_meet(POINT(0), s->of[3][j], RAY, left, least)
 #define triangle_MEET                                                                          \
     (left == 0 ? zt_triangle_meet(POINT(0), POINT(3), POINT(6), RAY) : REAL_INFINITY)
 #define DEFINE_SOLID(kind, KIND)                                                               \
     static inline real kind##_moving(const zt_poses *restrict s, int j, real unit, real ox,    \
                                      real oy, real oz, real dx, real dy, real dz,              \
-                                     int32_t left) {                                           \
+                                     int32_t left, real near) {                                \
         zt_solid_pose m = zt_solid_at(s, j, unit, KIND);                                       \
         real gx = ox - m.center.x, gy = oy - m.center.y, gz = oz - m.center.z;                 \
-        real t = zt_##kind##_meet(real_dot(m.x.x, m.x.y, m.x.z, gx, gy, gz),                   \
-                                  real_dot(m.y.x, m.y.y, m.y.z, gx, gy, gz),                   \
-                                  real_dot(m.z.x, m.z.y, m.z.z, gx, gy, gz),                   \
-                                  real_dot(m.x.x, m.x.y, m.x.z, dx, dy, dz),                   \
-                                  real_dot(m.y.x, m.y.y, m.y.z, dx, dy, dz),                   \
-                                  real_dot(m.z.x, m.z.y, m.z.z, dx, dy, dz), m.a, m.b, left);  \
+        real t =                                                                               \
+            zt_##kind##_meet(real_dot(m.x.x, m.x.y, m.x.z, gx, gy, gz),                        \
+                             real_dot(m.y.x, m.y.y, m.y.z, gx, gy, gz),                        \
+                             real_dot(m.z.x, m.z.y, m.z.z, gx, gy, gz),                        \
+                             real_dot(m.x.x, m.x.y, m.x.z, dx, dy, dz),                        \
+                             real_dot(m.y.x, m.y.y, m.y.z, dx, dy, dz),                        \
+                             real_dot(m.z.x, m.z.y, m.z.z, dx, dy, dz), m.a, m.b, left, near); \
         return m.good ? t : REAL_INFINITY;                                                     \
     }
 DEFINE_SOLID(ball, ZT_PRIMITIVE_BALL)
@@ -35,20 +36,20 @@ DEFINE_SOLID(cylinder, ZT_PRIMITIVE_CYLINDER)
 DEFINE_SOLID(cone, ZT_PRIMITIVE_CONE)
 DEFINE_SOLID(capsule, ZT_PRIMITIVE_CAPSULE)
 DEFINE_SOLID(torus, ZT_PRIMITIVE_TORUS)
-#define ball_MEET     ball_moving(s, j, unit, RAY, left)
-#define disk_MEET     disk_moving(s, j, unit, RAY, left)
-#define box_MEET      box_moving(s, j, unit, RAY, left)
-#define cylinder_MEET cylinder_moving(s, j, unit, RAY, left)
-#define cone_MEET     cone_moving(s, j, unit, RAY, left)
-#define capsule_MEET  capsule_moving(s, j, unit, RAY, left)
-#define torus_MEET    torus_moving(s, j, unit, RAY, left)
+#define ball_MEET     ball_moving(s, j, unit, RAY, left, least)
+#define disk_MEET     disk_moving(s, j, unit, RAY, left, least)
+#define box_MEET      box_moving(s, j, unit, RAY, left, least)
+#define cylinder_MEET cylinder_moving(s, j, unit, RAY, left, least)
+#define cone_MEET     cone_moving(s, j, unit, RAY, left, least)
+#define capsule_MEET  capsule_moving(s, j, unit, RAY, left, least)
+#define torus_MEET    torus_moving(s, j, unit, RAY, left, least)
 
 #define DEFINE_LOOPS(kind)                                                                     \
     static void kind##_lanes(zt_batch *restrict rays, const zt_origins *restrict from,         \
                              const zt_poses *restrict s, real unit, int32_t index, int first,  \
                              int count, real tie) {                                            \
-        const real more = 1 + tie, share = tie / TIE;                                          \
-        (void)unit;                                                                            \
+        const real more = 1 + tie, share = tie / TIE, least = 0;                               \
+        (void)unit, (void)least;                                                               \
         WIDE_LOOP for (int j = 0; j < count; j++) {                                            \
             int i = first + j;                                                                 \
             int32_t left = zt_leaving(from->source[i], index);                                 \
@@ -70,9 +71,9 @@ DEFINE_SOLID(torus, ZT_PRIMITIVE_TORUS)
         WIDE_LOOP for (int j = 0; j < count; j++) {                                            \
             int i = first + j;                                                                 \
             int32_t left = zt_leaving(from->source[i], index);                                 \
-            real t = kind##_MEET, near = from->near[i];                                        \
+            real least = from->near[i], t = kind##_MEET;                                       \
             int32_t hit = rays->hit[i];                                                        \
-            rays->hit[i] = ((t > near) & (t * (1 + TIE) + near < rays->t[i])) ? 0 : hit;       \
+            rays->hit[i] = ((t > least) & (t * (1 + TIE) + least < rays->t[i])) ? 0 : hit;     \
         }                                                                                      \
     }
 DEFINE_LOOPS(plane)

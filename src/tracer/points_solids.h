@@ -22,12 +22,12 @@ static inline int32_t zt_face_number(zt_face f, zt_primitive_kind kind) {
                                       real b) {                                                \
         real gx = from->x[k] - center.x, gy = from->y[k] - center.y,                           \
              gz = from->z[k] - center.z;                                                       \
+        const zt_rows m = {rx, ry, rz};                                                        \
         zt_face f = zt_##kind##_surface(real_dot(rx.x, rx.y, rx.z, gx, gy, gz),                \
                                         real_dot(ry.x, ry.y, ry.z, gx, gy, gz),                \
-                                        real_dot(rz.x, rz.y, rz.z, gx, gy, gz), a, b);         \
-        real nx = rx.x * f.nx + ry.x * f.ny + rz.x * f.nz;                                     \
-        real ny = rx.y * f.nx + ry.y * f.ny + rz.y * f.nz;                                     \
-        real nz = rx.z * f.nx + ry.z * f.ny + rz.z * f.nz;                                     \
+                                        real_dot(rz.x, rz.y, rz.z, gx, gy, gz), a, b, &m);     \
+        real3 g = zt_gradient(&m, f.nx, f.ny, f.nz);                                           \
+        real nx = g.x, ny = g.y, nz = g.z;                                                     \
         real unit = 1 / real_sqrt(real_dot(nx, ny, nz, nx, ny, nz)), step = f.off * unit;      \
         nx *= unit;                                                                            \
         ny *= unit;                                                                            \

@@ -100,6 +100,7 @@ static void add_extent(zt_extent *all, const zt_extent *e) {
     all->size = fmax(all->size, e->size);
     all->least = fmin(all->least, e->least);
     all->thin = fmin(all->thin, e->thin);
+    all->askew = fmax(all->askew, e->askew);
     all->grain = fmax(all->grain, e->grain);
     all->near = fmin(all->near, e->near);
     all->stretch = fmax(all->stretch, e->stretch);

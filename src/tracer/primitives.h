@@ -80,22 +80,24 @@ typedef struct zt_primitive {
     };
 } zt_primitive;
 
-/* Each function below gives the nearest positive distance at which the ray o + t d, |d| = 1,
- * meets the primitive, or infinity (or NaN, which compares as no hit). `leaving` is 0 for a ray
+/* Each function below gives the nearest distance above `near` >= 0 at which the ray o + t d,
+ * |d| = 1, meets the primitive, or infinity (or NaN, which compares as no hit); a closed one
+ * that begins nearer is met where it ends. `leaving` is 0 for a ray
  * that begins elsewhere, 1 for one that begins on this surface and goes on outside of it, -1
  * for one that goes on inside. */
 
 /* The normal has any length. */
 static inline real zt_plane_meet(real3 n, real distance, real ox, real oy, real oz, real dx,
-                                 real dy, real dz, int32_t leaving) {
+                                 real dy, real dz, int32_t leaving, real near) {
     real t =
         (distance - real_dot(n.x, n.y, n.z, ox, oy, oz)) / real_dot(n.x, n.y, n.z, dx, dy, dz);
-    return ((t > 0) & (leaving == 0)) ? t : REAL_INFINITY;
+    return ((t > near) & (leaving == 0)) ? t : REAL_INFINITY;
 }
 
 static inline real zt_plane_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
-                                     real dy, real dz, int32_t leaving) {
-    return zt_plane_meet(p->plane.normal, p->plane.distance, ox, oy, oz, dx, dy, dz, leaving);
+                                     real dy, real dz, int32_t leaving, real near) {
+    return zt_plane_meet(p->plane.normal, p->plane.distance, ox, oy, oz, dx, dy, dz, leaving,
+                         near);
 }
 
 /* Roots of t^2 - 2 b t + c = 0 with the part across the ray, |f + b d|^2, in place of the
@@ -103,7 +105,7 @@ static inline real zt_plane_distance(const zt_primitive *p, real ox, real oy, re
  * ray/sphere intersection", Ray Tracing Gems, 2019. The far one counts from inside. Of a ray
  * that leaves the sphere inwards one root is 0, and the other one, 2 b, is positive. */
 static inline real zt_sphere_meet(real3 center, real radius, real ox, real oy, real oz, real dx,
-                                  real dy, real dz, int32_t leaving) {
+                                  real dy, real dz, int32_t leaving, real near) {
     real r2 = radius * radius;
     real fx = ox - center.x, fy = oy - center.y, fz = oz - center.z;
     real b = -real_dot(fx, fy, fz, dx, dy, dz);
@@ -113,15 +115,16 @@ static inline real zt_sphere_meet(real3 center, real radius, real ox, real oy, r
     real half = real_sqrt(real_max(inside, 0));
     real q = b + (b < 0 ? -half : half), s = c / q;
     real first = real_min(s, q), second = real_max(s, q);
-    real t = first > 0 ? first : second;
-    t = ((inside > 0) & (t > 0)) ? t : REAL_INFINITY;
+    real t = first > near ? first : second;
+    t = ((inside > 0) & (t > near)) ? t : REAL_INFINITY;
     real through = real_max(2 * b, REAL_LEAST);
     return leaving == 0 ? t : leaving < 0 ? through : REAL_INFINITY;
 }
 
 static inline real zt_sphere_distance(const zt_primitive *p, real ox, real oy, real oz, real dx,
-                                      real dy, real dz, int32_t leaving) {
-    return zt_sphere_meet(p->sphere.center, p->sphere.radius, ox, oy, oz, dx, dy, dz, leaving);
+                                      real dy, real dz, int32_t leaving, real near) {
+    return zt_sphere_meet(p->sphere.center, p->sphere.radius, ox, oy, oz, dx, dy, dz, leaving,
+                          near);
 }
 
 /* The side of the origin that a directed edge a -> b has it on, twice the area they span: right
@@ -176,16 +179,17 @@ static inline real zt_triangle_meet(real3 v0, real3 v1, real3 v2, real ox, real 
 }
 
 static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy, real oz,
-                                        real dx, real dy, real dz, int32_t leaving) {
+                                        real dx, real dy, real dz, int32_t leaving, real near) {
     const real3 *v = p->triangle.vertices;
     real t = zt_triangle_meet(v[0], v[1], v[2], ox, oy, oz, dx, dy, dz);
-    return leaving == 0 ? t : REAL_INFINITY;
+    return ((t > near) & (leaving == 0)) ? t : REAL_INFINITY;
 }
 
 /* A solid's: the ray is taken to its space, where distances along it stay what they are. */
 #define ZT_SOLID_DISTANCE(kind)                                                                \
     static inline real zt_##kind##_distance(const zt_primitive *p, real ox, real oy, real oz,  \
-                                            real dx, real dy, real dz, int32_t leaving) {      \
+                                            real dx, real dy, real dz, int32_t leaving,        \
+                                            real near) {                                       \
         const real3 *m = p->solid.rows;                                                        \
         real3 c = p->solid.center;                                                             \
         real gx = ox - c.x, gy = oy - c.y, gz = oz - c.z;                                      \
@@ -195,7 +199,7 @@ static inline real zt_triangle_distance(const zt_primitive *p, real ox, real oy,
                                 real_dot(m[0].x, m[0].y, m[0].z, dx, dy, dz),                  \
                                 real_dot(m[1].x, m[1].y, m[1].z, dx, dy, dz),                  \
                                 real_dot(m[2].x, m[2].y, m[2].z, dx, dy, dz), p->solid.a,      \
-                                p->solid.b, leaving);                                          \
+                                p->solid.b, leaving, near);                                    \
     }
 ZT_SOLID_DISTANCE(ball)
 ZT_SOLID_DISTANCE(disk)

@@ -18,8 +18,9 @@ enum { ZT_BATCH_LANES = 16 };
 /* Where rays begin. `source` says on whose surface: -1 for none, else twice the index of the
  * primitive, and one more where the ray goes on inside of it. `near` is the distance within
  * which roundings decide what lies before the ray and what behind: a shadow ray passes what it
- * meets there, as where two walls join. `moment` and `between` say when: so far, 0 to 1, on the
- * way from that moment of the exposure to the next; they mean something where the tracer moves.
+ * meets there, as where two walls join, and is inside of what is closed and begins there.
+ * `moment` and `between` say when: so far, 0 to 1, on the way from that moment of the exposure
+ * to the next; they mean something where the tracer moves.
  */
 typedef struct zt_origins {
     alignas(64) real x[ZT_BATCH];

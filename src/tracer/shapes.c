@@ -133,6 +133,10 @@ static bool prepare_triangle(zt_making *m) {
     return true;
 }
 
+static vec3 axis_of(const xform *place, int i) {
+    return i == 0 ? place->x : i == 1 ? place->y : place->z;
+}
+
 /* A solid whose own space `place` takes to the space relative to the camera; there it reaches
  * `round` from its axis z in each direction across (or `square` along x and y), and from `low`
  * to `high` along the axis. */
@@ -142,7 +146,7 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     if (!finite3(place->shift)) return false;
     vec3 rows[3], reach, middle = xform_point(place, (vec3){0, 0, (low + high) / 2});
     double half = (high - low) / 2, longest = 0, longest_back = 0;
-    double reaches[3];
+    double reaches[3], thin = INFINITY;
     for (int i = 0; i < 3; i++) {
         rows[i] = zt_xform_row(&back, i);
         if (!finite3(rows[i])) return false;
@@ -150,7 +154,10 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
         reaches[i] = round * hypot(r.x, r.y) + square * (fabs(r.x) + fabs(r.y)) +
                      ball * vec3_length(r) + half * fabs(r.z);
         longest = fmax(longest, vec3_length(r));
-        longest_back = fmax(longest_back, vec3_length(rows[i]));
+        double back_length = vec3_length(rows[i]);
+        longest_back = fmax(longest_back, back_length);
+        thin = fmin(thin, (i == 2 && half > 0 ? half + ball : 1) / back_length);
+        m->extent->askew = fmax(m->extent->askew, vec3_length(axis_of(place, i)) * back_length);
         m->primitive->solid.rows[i] = to_real3(rows[i]);
     }
     reach = (vec3){reaches[0], reaches[1], reaches[2]};
@@ -169,8 +176,7 @@ static bool make_solid(zt_making *m, zt_primitive_kind kind, const xform *place,
     m->extent->least =
         fmin(vec3_length(place->x), fmin(vec3_length(place->y), vec3_length(place->z)));
     xform undone = xform_inverse(m->world);
-    if (wide_longest(m->world) * wide_longest(&undone) > PLAIN)
-        m->extent->thin = m->extent->least;
+    if (wide_longest(m->world) * wide_longest(&undone) > PLAIN) m->extent->thin = thin;
     return true;
 }
 
@@ -270,21 +276,22 @@ static bool prepare_torus(zt_making *m) {
 
 static zt_face solid_face(const zt_primitive *p, real x, real y, real z) {
     const real a = p->solid.a, b = p->solid.b;
+    const zt_rows m = {p->solid.rows[0], p->solid.rows[1], p->solid.rows[2]};
     switch (p->kind) {
     case ZT_PRIMITIVE_BOX:
-        return zt_box_surface(x, y, z, a, b);
+        return zt_box_surface(x, y, z, a, b, &m);
     case ZT_PRIMITIVE_CYLINDER:
-        return zt_cylinder_surface(x, y, z, a, b);
+        return zt_cylinder_surface(x, y, z, a, b, &m);
     case ZT_PRIMITIVE_CONE:
-        return zt_cone_surface(x, y, z, a, b);
+        return zt_cone_surface(x, y, z, a, b, &m);
     case ZT_PRIMITIVE_CAPSULE:
-        return zt_capsule_surface(x, y, z, a, b);
+        return zt_capsule_surface(x, y, z, a, b, &m);
     case ZT_PRIMITIVE_TORUS:
-        return zt_torus_surface(x, y, z, a, b);
+        return zt_torus_surface(x, y, z, a, b, &m);
     case ZT_PRIMITIVE_DISK:
-        return zt_disk_surface(x, y, z, a, b);
+        return zt_disk_surface(x, y, z, a, b, &m);
     default:
-        return zt_ball_surface(x, y, z, a, b);
+        return zt_ball_surface(x, y, z, a, b, &m);
     }
 }
 
@@ -365,7 +372,10 @@ bool ZT_REAL_NAME(zt_prepare_mesh)(zt_making *m, zt_placed_mesh *placed, const z
         reaches[i] = fabs(r.x) * half.x + fabs(r.y) * half.y + fabs(r.z) * half.z;
         reach = fmax(reach, 3 * vec3_max_abs(placed->rows[i]));
         across = fmax(across, vec3_length(r));
-        across_back = fmax(across_back, vec3_length(placed->rows[i]));
+        double back_length = vec3_length(placed->rows[i]);
+        across_back = fmax(across_back, back_length);
+        m->extent->askew =
+            fmax(m->extent->askew, vec3_length(axis_of(&place, i)) * back_length);
     }
     vec3 around = {reaches[0], reaches[1], reaches[2]};
     placed->at = back.shift;

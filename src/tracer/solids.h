@@ -2,14 +2,18 @@
  * point. Straight code without branches, so that a loop over a batch becomes as wide as the
  * machine is.
  *
- * zt_<kind>_meet gives the nearest t > 0 at which f + t e meets the solid, where it is left if
- * f is inside, or infinity. e may have any length that squares without overflow or underflow.
+ * zt_<kind>_meet gives the nearest t > near >= 0 at which f + t e meets the solid, where it is
+ * left if f + near e is inside, or infinity. e may have any length that squares without
+ * overflow or underflow.
  * `leaving` is 0 where the ray begins elsewhere. It is 1 where the ray begins on this very
  * surface and goes outward, and -1 where it goes inward: the root at 0 is then left out,
  * however f was rounded. Convex solids are never met again outward and always left inward, at
  * the least t there is if need be.
  *
- * zt_<kind>_surface gives, for a point near the surface, the face that it is nearest to.
+ * zt_<kind>_surface gives, for a point near the surface, the face that it is nearest to,
+ * measured where the solid is: `m` has the rows that take directions from there. In a thin
+ * one's own space another face may be nearer than the one that the point lies on but for
+ * roundings.
  *
  * What the two parameters p0, p1 of all functions are:
  *   disk      z = 0, radius 1
@@ -46,6 +50,21 @@ typedef struct zt_face {
     real nx, ny, nz, off;
 } zt_face;
 
+/* Rows of a matrix; and how long a gradient of the solid's own space is beyond it. */
+typedef struct zt_rows {
+    real3 x, y, z;
+} zt_rows;
+
+static inline real3 zt_gradient(const zt_rows *m, real nx, real ny, real nz) {
+    return (real3){m->x.x * nx + m->y.x * ny + m->z.x * nz,
+                   m->x.y * nx + m->y.y * ny + m->z.y * nz,
+                   m->x.z * nx + m->y.z * ny + m->z.z * nz};
+}
+
+static inline real rows_length(real3 v) {
+    return real_sqrt(real_dot(v.x, v.y, v.z, v.x, v.y, v.z));
+}
+
 /* The part of a ray from `in` to `out` that lies within something; none where in > out. */
 typedef struct zt_stretch {
     real in, out;
@@ -66,10 +85,10 @@ static inline zt_stretch stretch_hull(zt_stretch a, zt_stretch b) {
 
 /* Where a ray meets a convex solid that it crosses along a stretch. If there is none, but it
  * began inward, it hardly entered, and is out at once. */
-static inline real stretch_meet(zt_stretch s, int32_t leaving) {
+static inline real stretch_meet(zt_stretch s, int32_t leaving, real near) {
     bool some = (s.in <= s.out) & (s.out > REAL_LEAST);
     real left = some ? s.out : REAL_LEAST;
-    real elsewhere = some ? (s.in > 0 ? s.in : s.out) : REAL_INFINITY;
+    real elsewhere = some ? (s.in > near ? s.in : s.out) : REAL_INFINITY;
     return leaving == 0 ? elsewhere : leaving > 0 ? REAL_INFINITY : left;
 }
 
@@ -106,46 +125,50 @@ static inline zt_stretch tube_stretch(real fx, real fy, real ex, real ey) {
 /* ---- disk ---- */
 
 static inline real zt_disk_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
-                                real p1, int32_t leaving) {
+                                real p1, int32_t leaving, real near) {
     (void)p0, (void)p1;
     real t = -fz / ez;
     real x = fx + t * ex, y = fy + t * ey;
-    return ((x * x + y * y <= 1) & (t > 0) & (leaving == 0)) ? t : REAL_INFINITY;
+    return ((x * x + y * y <= 1) & (t > near) & (leaving == 0)) ? t : REAL_INFINITY;
 }
 
-static inline zt_face zt_disk_surface(real x, real y, real z, real p0, real p1) {
-    (void)x, (void)y, (void)p0, (void)p1;
+static inline zt_face zt_disk_surface(real x, real y, real z, real p0, real p1,
+                                      const zt_rows *m) {
+    (void)x, (void)y, (void)p0, (void)p1, (void)m;
     return (zt_face){0, 0, 1, z};
 }
 
 /* ---- box ---- */
 
 static inline real zt_box_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
-                               real p1, int32_t leaving) {
+                               real p1, int32_t leaving, real near) {
     (void)p0, (void)p1;
     zt_stretch s = {-REAL_INFINITY, REAL_INFINITY};
     s = stretch_both(s, slab_stretch(fx, ex, -1, 1));
     s = stretch_both(s, slab_stretch(fy, ey, -1, 1));
     s = stretch_both(s, slab_stretch(fz, ez, -1, 1));
-    return stretch_meet(s, leaving);
+    return stretch_meet(s, leaving, near);
 }
 
-static inline zt_face zt_box_surface(real x, real y, real z, real p0, real p1) {
+static inline zt_face zt_box_surface(real x, real y, real z, real p0, real p1,
+                                     const zt_rows *m) {
     (void)p0, (void)p1;
     real ax = real_abs(x), ay = real_abs(y), az = real_abs(z);
-    bool is_x = (ax >= ay) & (ax >= az), is_y = !is_x & (ay >= az), is_z = !is_x & !is_y;
+    real lx = (ax - 1) / rows_length(m->x), ly = (ay - 1) / rows_length(m->y),
+         lz = (az - 1) / rows_length(m->z);
+    bool is_x = (lx >= ly) & (lx >= lz), is_y = !is_x & (ly >= lz), is_z = !is_x & !is_y;
     real nx = x < 0 ? -1 : 1, ny = y < 0 ? -1 : 1, nz = z < 0 ? -1 : 1;
-    return (zt_face){is_x ? nx : 0, is_y ? ny : 0, is_z ? nz : 0,
-                     real_max(ax, real_max(ay, az)) - 1};
+    real off = is_x ? ax - 1 : is_y ? ay - 1 : az - 1;
+    return (zt_face){is_x ? nx : 0, is_y ? ny : 0, is_z ? nz : 0, off};
 }
 
 /* ---- ball ---- */
 
 static inline real zt_ball_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
-                                real p1, int32_t leaving) {
+                                real p1, int32_t leaving, real near) {
     (void)p0, (void)p1;
     real a = real_dot(ex, ey, ez, ex, ey, ez);
-    return stretch_meet(ball_stretch(fx, fy, fz, ex, ey, ez, a), leaving);
+    return stretch_meet(ball_stretch(fx, fy, fz, ex, ey, ez, a), leaving, near);
 }
 
 /* Of what is everywhere 1 away from (x, y, z) = 0; a normal also there. */
@@ -156,33 +179,36 @@ static inline zt_face round_face(real x, real y, real z) {
     return (zt_face){none ? 1 : x * scale, y * scale, z * scale, length - 1};
 }
 
-static inline zt_face zt_ball_surface(real x, real y, real z, real p0, real p1) {
-    (void)p0, (void)p1;
+static inline zt_face zt_ball_surface(real x, real y, real z, real p0, real p1,
+                                      const zt_rows *m) {
+    (void)p0, (void)p1, (void)m;
     return round_face(x, y, z);
 }
 
 /* ---- cylinder ---- */
 
 static inline real zt_cylinder_meet(real fx, real fy, real fz, real ex, real ey, real ez,
-                                    real p0, real p1, int32_t leaving) {
+                                    real p0, real p1, int32_t leaving, real near) {
     (void)p0, (void)p1;
     real scale = 1 / real_sqrt(real_dot(ex, ey, ez, ex, ey, ez));
     zt_stretch side = tube_stretch(fx, fy, ex * scale, ey * scale);
     zt_stretch s = {side.in * scale, side.out * scale};
-    return stretch_meet(stretch_both(s, slab_stretch(fz, ez, 0, 1)), leaving);
+    return stretch_meet(stretch_both(s, slab_stretch(fz, ez, 0, 1)), leaving, near);
 }
 
 /* The face of the side of something round about z, or that of the cap it is nearer to. */
-static inline zt_face capped_face(zt_face side, real z) {
+static inline zt_face capped_face(zt_face side, real z, const zt_rows *m) {
     zt_face cap = {0, 0, z > (real)0.5 ? 1 : -1, z > (real)0.5 ? z - 1 : -z};
-    bool on_cap = cap.off > side.off;
+    real steep = rows_length(zt_gradient(m, side.nx, side.ny, side.nz));
+    bool on_cap = cap.off * steep > side.off * rows_length(m->z);
     return (zt_face){on_cap ? cap.nx : side.nx, on_cap ? cap.ny : side.ny,
                      on_cap ? cap.nz : side.nz, on_cap ? cap.off : side.off};
 }
 
-static inline zt_face zt_cylinder_surface(real x, real y, real z, real p0, real p1) {
+static inline zt_face zt_cylinder_surface(real x, real y, real z, real p0, real p1,
+                                          const zt_rows *m) {
     (void)p0, (void)p1;
-    return capped_face(round_face(x, y, 0), z);
+    return capped_face(round_face(x, y, 0), z, m);
 }
 
 /* ---- cone ---- */
@@ -215,28 +241,29 @@ static inline zt_stretch cone_side_stretch(real fx, real fy, real fz, real ex, r
 }
 
 static inline real zt_cone_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
-                                real p1, int32_t leaving) {
+                                real p1, int32_t leaving, real near) {
     real scale = 1 / real_sqrt(real_dot(ex, ey, ez, ex, ey, ez));
     bool turned = p0 > p1;
     zt_stretch side = cone_side_stretch(fx, fy, turned ? 1 - fz : fz, ex * scale, ey * scale,
                                         (turned ? -ez : ez) * scale, real_min(p0, p1));
     side = (zt_stretch){side.in * scale, side.out * scale};
-    return stretch_meet(stretch_both(slab_stretch(fz, ez, 0, 1), side), leaving);
+    return stretch_meet(stretch_both(slab_stretch(fz, ez, 0, 1), side), leaving, near);
 }
 
-static inline zt_face zt_cone_surface(real x, real y, real z, real p0, real p1) {
+static inline zt_face zt_cone_surface(real x, real y, real z, real p0, real p1,
+                                      const zt_rows *m) {
     zt_face around = round_face(x, y, 0);
     real slope = p1 - p0;
     real scale = 1 / real_sqrt(1 + slope * slope);
     real off = around.off + 1 - (p0 + slope * z);
     zt_face side = {around.nx * scale, around.ny * scale, -slope * scale, off * scale};
-    return capped_face(side, z);
+    return capped_face(side, z, m);
 }
 
 /* ---- capsule ---- */
 
 static inline real zt_capsule_meet(real fx, real fy, real fz, real ex, real ey, real ez,
-                                   real p0, real p1, int32_t leaving) {
+                                   real p0, real p1, int32_t leaving, real near) {
     (void)p1;
     real scale = 1 / real_sqrt(real_dot(ex, ey, ez, ex, ey, ez));
     real ux = ex * scale, uy = ey * scale, uz = ez * scale;
@@ -245,11 +272,12 @@ static inline real zt_capsule_meet(real fx, real fy, real fz, real ex, real ey, 
     zt_stretch s = stretch_hull(ball_stretch(fx, fy, fz, ux, uy, uz, 1),
                                 ball_stretch(fx, fy, fz - p0, ux, uy, uz, 1));
     s = stretch_hull(s, between);
-    return stretch_meet((zt_stretch){s.in * scale, s.out * scale}, leaving);
+    return stretch_meet((zt_stretch){s.in * scale, s.out * scale}, leaving, near);
 }
 
-static inline zt_face zt_capsule_surface(real x, real y, real z, real p0, real p1) {
-    (void)p1;
+static inline zt_face zt_capsule_surface(real x, real y, real z, real p0, real p1,
+                                         const zt_rows *m) {
+    (void)p1, (void)m;
     return round_face(x, y, z < 0 ? z : z > p0 ? z - p0 : 0);
 }
 

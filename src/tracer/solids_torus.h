@@ -98,7 +98,7 @@ static inline real torus_root(const torus_ray *r, real p, torus_crossing c) {
 
 /* Selects are made of numbers, not of truths, where GCC 12 would not widen the latter. */
 static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, real ez, real p0,
-                                 real p1, int32_t leaving) {
+                                 real p1, int32_t leaving, real near) {
     (void)p1;
     real scale = 1 / real_sqrt(real_dot(ex, ey, ez, ex, ey, ez));
     torus_ray r = {0, 0, 0, ex * scale, ey * scale, ez * scale, p0};
@@ -111,7 +111,8 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     bool elsewhere = leaving == 0;
     real g2 = real_dot(r.gx, r.gy, r.gz, r.gx, r.gy, r.gz), g = real_sqrt(g2);
     real reach2 = (1 + p0 - g) * (1 + p0 + g), reach = real_sqrt(real_max(reach2, 0));
-    real low = ((k > reach) & elsewhere) ? -reach : -k;
+    real begin = elsewhere ? near / scale - k : -k;
+    real low = ((-begin > reach) & elsewhere) ? -reach : begin;
     /* Both are small for rays close to the axis, and then q is better known from across it. */
     real across2 = r.ex * r.ex + r.ey * r.ey, across = -(r.gx * r.ex + r.gy * r.ey);
     real p = g2 + (1 - p0) * (1 + p0) - 2 * across2;
@@ -150,8 +151,9 @@ static inline real zt_torus_meet(real fx, real fy, real fz, real ex, real ey, re
     return real_max((jump + (rest + torus_root(&r, p, c))) * scale, REAL_LEAST) + miss;
 }
 
-static inline zt_face zt_torus_surface(real x, real y, real z, real p0, real p1) {
-    (void)p1;
+static inline zt_face zt_torus_surface(real x, real y, real z, real p0, real p1,
+                                       const zt_rows *m) {
+    (void)p1, (void)m;
     real around = real_sqrt(x * x + y * y), aside = around - 1;
     bool axis = around == 0;
     real scale = aside / (axis ? 1 : around);
