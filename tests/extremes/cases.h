@@ -26,6 +26,8 @@ extern const extreme_case cases_triangles[];
 extern const extreme_case cases_transforms[];
 extern const extreme_case cases_lights[];
 extern const extreme_case cases_nasty[];
+/* Further scenes of the one of these, which were wrong once; ended by -1. */
+extern const int cases_nasty_again[];
 
 /* All of the above, each list ended by a case without a name. */
 extern const extreme_case *const cases_all[];

@@ -11,24 +11,33 @@ static void worst(double *kept, real error) {
 
 void judge_count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
                  ref_hit expected, const probe *a) {
-    if (++*counter > 3 || !j->verbose) return;
+    ++*counter;
+    if (!j->verbose) return;
     printf("  %s %d, %s: %s: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g) from %d/%d: "
-           "object %d part %d t %.17g, reference object %d part %d t %.17g, of shape %d\n",
+           "object %d part %d t %.17g normal (%.9g %.9g %.9g), reference object %d part %d t "
+           "%.17g, of shape %d\n",
            j->name, j->scene, j->how, what, (double)ray->o.x, (double)ray->o.y,
            (double)ray->o.z, (double)ray->d.x, (double)ray->d.y, (double)ray->d.z,
-           ray->source_object, ray->source_part, a->object, a->part, a->t, expected.object,
-           expected.part, (double)expected.t,
+           ray->source_object, ray->source_part, a->object, a->part, a->t, a->normal.x,
+           a->normal.y, a->normal.z, expected.object, expected.part, (double)expected.t,
            (int)j->ref->primitives[a->object < 0 ? expected.object : a->object].shape);
+}
+
+void judge_error(const judge *j, double *kept, real error, double most, const char *what,
+                 const ref_ray *ray, ref_hit expected, const probe *a) {
+    worst(kept, error);
+    if (!((double)error <= most)) judge_count(j, &j->tally->beyond, what, ray, expected, a);
 }
 
 /* By how much changes within the tolerance move the place along a ray where it meets a face:
  * less by its slant than by its bend where the ray runs along it. */
 static real uncertainty(const judge *j, const ref_primitive *p, int32_t part,
                         const ref_ray *ray, real t) {
-    ref_face face = ref_nearest_face(p, part, real3_along(ray->o, t, ray->d));
+    real3 at = real3_along(ray->o, t, ray->d), d = real3_unit(ray->d);
+    ref_face face = ref_nearest_face(p, part, at);
     real off = j->tolerance * ref_scale(p, ray, t) + p->grain;
-    real slant = real_abs(real3_dot(face.normal, real3_unit(ray->d)));
-    real by_slant = off / slant, by_bend = 2 * REAL(sqrt)(2 * off / face.bend);
+    real slant = real_abs(real3_dot(face.normal, d));
+    real by_slant = off / slant, by_bend = 2 * REAL(sqrt)(2 * off / ref_curve(p, at, d));
     return real_min(by_slant, by_bend) / real3_length(ray->d);
 }
 
@@ -103,17 +112,15 @@ static void judge_normal(const judge *j, const ref_primitive *p, const ref_ray *
     if (error > j->tolerance && expected.object == a->object)
         error = real_min(error,
                          normal_error(j, p, a, scale, real3_along(ray->o, expected.t, ray->d)));
-    int64_t none = 0; /* the worst says how many matter */
-    if (error > j->tolerance && (double)error > j->tally->normal)
-        judge_count(j, &none, "normal", ray, expected, a);
-    worst(&j->tally->normal, error);
+    judge_error(j, &j->tally->normal, error, j->tolerance, "normal", ray, expected, a);
 }
 
-static void judge_mirror(const judge *j, const ref_ray *ray, const probe *a) {
+static void judge_mirror(const judge *j, const ref_ray *ray, ref_hit expected, const probe *a) {
     real3 d = real3_unit(ray->d), n = real3_of(a->normal);
     real3 mirrored = real3_unit(real3_along(d, -2 * real3_dot(d, n), n));
     real3 off = real3_sub(mirrored, real3_of(a->next_direction));
-    worst(&j->tally->mirror, real3_length(off));
+    judge_error(j, &j->tally->mirror, real3_length(off), j->tolerance, "mirror", ray, expected,
+                a);
 }
 
 static void judge_missing(const judge *j, const ref_ray *ray, ref_hit expected,
@@ -184,44 +191,28 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
     /* Along the ray as well, as far as that is not how the surface moves. */
     off = real_max(off, real3_length(real3_sub(point, at)) / 2) / scale;
     bool smooth = j->ref->scene->objects[a->object].smooth;
-    worst(&t->hit, error);
-    if (!smooth) worst(p->shape == ZT_SHAPE_MESH ? &t->lift : &t->point, off);
+    bool lifted = p->shape == ZT_SHAPE_MESH;
+    judge_error(j, &t->hit, error, j->tolerance, "distance", ray, expected, a);
+    if (!smooth)
+        judge_error(j, lifted ? &t->lift : &t->point, off, (lifted ? 8 : 1) * j->tolerance,
+                    "point", ray, expected, a);
     if (!(a->t > 0)) {
         judge_count(j, &t->false_hits, "behind the ray", ray, expected, a);
         return;
     }
     if (!judge_surface(j, ray, scale, expected, error, a)) return;
     if (j->ref->scene->objects[p->object].smooth)
-        judge_smooth(j, ray, a);
+        judge_smooth(j, ray, expected, a);
     else
         judge_normal(j, p, ray, scale, expected, a);
-    judge_mirror(j, ray, a);
+    judge_mirror(j, ray, expected, a);
     if (j->lights) judge_lights(j, ray, scale, a);
 }
 
 bool tally_holds(const tally *t, double tolerance) {
     return t->hit <= tolerance && t->point <= tolerance && t->lift <= 8 * tolerance &&
            t->normal <= tolerance && t->mirror <= tolerance &&
-           t->wrong + t->missed + t->false_hits + t->leaks + t->acne + t->not_finite == 0;
-}
-
-void tally_add(tally *sum, const tally *t) {
-    sum->rays += t->rays;
-    sum->hits += t->hits;
-    worst(&sum->hit, t->hit);
-    worst(&sum->point, t->point);
-    worst(&sum->lift, t->lift);
-    worst(&sum->normal, t->normal);
-    worst(&sum->mirror, t->mirror);
-    worst(&sum->forward, t->forward);
-    worst(&sum->relative, t->relative);
-    worst(&sum->condition, t->condition);
-    sum->wrong += t->wrong;
-    sum->missed += t->missed;
-    sum->false_hits += t->false_hits;
-    sum->leaks += t->leaks;
-    sum->acne += t->acne;
-    sum->ties += t->ties;
-    sum->not_finite += t->not_finite;
-    sum->seconds += t->seconds;
+           t->wrong + t->missed + t->false_hits + t->leaks + t->acne + t->beyond +
+                   t->not_finite ==
+               0;
 }

@@ -23,6 +23,7 @@ typedef struct tally {
     int64_t leaks;      /* light that went through a surface, or ways through a closed one */
     int64_t acne;       /* points that nothing shadows, in shadow */
     int64_t ties;       /* answers that the smallest changes within the tolerance make right */
+    int64_t beyond;     /* answers with an error beyond the tolerance */
     int64_t not_finite;
     double seconds; /* of the tracer, for all rays with their shadows */
 } tally;
@@ -45,14 +46,17 @@ void judge_probe(const judge *j, const ref_ray *ray, ref_hit expected, const pro
 
 /* Parts of the above: each light, and the normal and the lights of a smooth mesh. */
 void judge_lights(const judge *j, const ref_ray *ray, real scale, const probe *answer);
-void judge_smooth(const judge *j, const ref_ray *ray, const probe *answer);
+void judge_smooth(const judge *j, const ref_ray *ray, ref_hit expected, const probe *answer);
 
-/* Counts a mistake, and prints the first few of them where that is asked for. */
+/* Counts a mistake, and prints it where that is asked for. */
 void judge_count(const judge *j, int64_t *counter, const char *what, const ref_ray *ray,
                  ref_hit expected, const probe *answer);
 
+/* Keeps the worst of an error, and counts, as `beyond`, what is more than `most`. */
+void judge_error(const judge *j, double *kept, real error, double most, const char *what,
+                 const ref_ray *ray, ref_hit expected, const probe *answer);
+
 /* Whether all that must hold does. */
 bool tally_holds(const tally *t, double tolerance);
-void tally_add(tally *sum, const tally *t);
 
 #endif

@@ -32,7 +32,7 @@ static void judge_light(const judge *j, const ref_ray *ray, int light, bool reac
         sure = true;
     else
         ref_blocked(&sure, j->ref, &shadow, 1, j->tolerance, -1);
-    probe of_shadow = {.object = a->object, .part = reached};
+    probe of_shadow = {.object = a->object, .part = a->part, .normal = a->normal};
     if (!sure)
         j->tally->ties++;
     else if (reached)
@@ -71,14 +71,14 @@ static real3 smooth_normal(const judge *j, const probe *a, const ref_ray *ray) {
 /* Meant for convex meshes alone in a scene, turned and scaled alike in all directions: lit is
  * what the smooth normal turns to the light, whatever the triangles do; at most a hundredth
  * off. Where they show the eye another side than the normal does, nothing is asked. */
-void judge_smooth(const judge *j, const ref_ray *ray, const probe *a) {
+void judge_smooth(const judge *j, const ref_ray *ray, ref_hit expected, const probe *a) {
     real3 normal = smooth_normal(j, a, ray);
     if (real3_dot(normal, real3_unit(ray->d)) > -(real)0.02) return;
     /* The corners' normals are given in single precision. */
     const ref_primitive *p = &j->ref->primitives[a->object];
     real off = real3_length(real3_sub(normal, real3_of(a->normal))) - (real)2e-7;
     off /= 1 + ref_scale(p, ray, a->t) / p->triangles[a->part].smallest;
-    if (!((double)off <= j->tally->normal)) j->tally->normal = (double)off;
+    judge_error(j, &j->tally->normal, off, j->tolerance, "normal", ray, expected, a);
     for (int32_t i = 0; i < j->ref->scene->light_count; i++) {
         if (j->ref->scene->lights[i].kind != ZT_LIGHT_POINT) continue;
         bool lit = (a->lights >> i) & 1;

@@ -92,7 +92,7 @@ static void run_mesh(tally *t, probe_tracer *tracer, const closed_mesh *m, draw 
 bool run_leaks(run_result *result, int64_t rays, run_how how) {
     bool verbose = how == RUN_TOLD;
     static closed_mesh m;
-    *result = (run_result){0};
+    *result = (run_result){.asked = {true, true, true}};
     int per_mesh = rays < 20 * RAYS_A_MESH ? (int)(rays / 20) : RAYS_A_MESH;
     for (int64_t done = 0, scene = 0; per_mesh > 0 && done < rays; done += per_mesh, scene++)
         for (int i = 0; i < PROBE_PRECISIONS; i++) {

@@ -1,10 +1,11 @@
 /* Holds the tracer against the reference where numbers are extreme, and prints how exact and
  * how fast it was:
- *     extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] [--verbose]
- *              [--digest]
- * --first: the number of the first scene of each case; --scenes: how many instead of the few of
- * the short run; --rays: how many at edges and corners of closed meshes. --digest prints a
- * checksum of all answers instead, for comparisons between kernels. Exits with 1 where what
+ *     extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--precision NAME]
+ *              [--csv FILE] [--verbose] [--digest]
+ * --first: the number of the first scene of each case; --scenes: how many; without both, those
+ * of the short run. --rays: how many at edges and corners of closed meshes. --precision: one
+ * instead of all three. --verbose prints each mistake, --digest a checksum of all answers
+ * instead, for comparisons between kernels. Exits with 1 where what
  * must hold does not. */
 #include <stdlib.h>
 #include <string.h>
@@ -17,8 +18,15 @@ typedef struct options {
     const char *only, *csv;
     int first, scenes;
     int64_t rays;
+    unsigned precisions;
     bool verbose, digest;
 } options;
+
+static bool read_precision(options *o, const char *name) {
+    for (int i = 0; i < PROBE_PRECISIONS; i++)
+        if (strcmp(name, table_precisions[i]) == 0) o->precisions = 1u << i;
+    return o->precisions != RUN_ALL_PRECISIONS;
+}
 
 static bool read_options(options *o, int count, char **words) {
     for (int i = 1; i < count; i++) {
@@ -27,7 +35,9 @@ static bool read_options(options *o, int count, char **words) {
             o->verbose = true;
         else if (strcmp(words[i], "--digest") == 0)
             o->digest = true;
-        else if (strcmp(words[i], "--case") == 0 && next)
+        else if (strcmp(words[i], "--precision") == 0 && next) {
+            if (!read_precision(o, words[++i])) return false;
+        } else if (strcmp(words[i], "--case") == 0 && next)
             o->only = words[++i];
         else if (strcmp(words[i], "--csv") == 0 && next)
             o->csv = words[++i];
@@ -54,7 +64,7 @@ static bool run(int *failures, FILE *csv, const extreme_case *c, const options *
     else if (c == &pictures_case)
         ok = run_pictures(&result, o->scenes > 0 ? o->scenes : 1, how);
     else
-        ok = run_case(&result, c, o->first, o->scenes > 0 ? o->scenes : c->scenes, how);
+        ok = run_case(&result, c, o->first, o->scenes, o->precisions, how);
     if (!ok) return false;
     if (!o->digest)
         *failures += table_case(csv, c, &result);
@@ -65,10 +75,10 @@ static bool run(int *failures, FILE *csv, const extreme_case *c, const options *
 }
 
 int main(int count, char **words) {
-    options o = {.rays = 200000};
+    options o = {.first = -1, .rays = 200000, .precisions = RUN_ALL_PRECISIONS};
     if (!read_options(&o, count, words)) {
-        fputs("usage: extremes [--case NAME] [--first N] [--scenes N] [--rays N] [--csv FILE] "
-              "[--verbose] [--digest]\n",
+        fputs("usage: extremes [--case NAME] [--first N] [--scenes N] [--rays N] "
+              "[--precision NAME] [--csv FILE] [--verbose] [--digest]\n",
               stderr);
         return 2;
     }

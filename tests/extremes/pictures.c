@@ -132,7 +132,7 @@ static bool render(picture *p, run_result *result, int precision) {
 bool run_pictures(run_result *result, int count, run_how how) {
     static picture p;
     bool ok = true;
-    *result = (run_result){0};
+    *result = (run_result){.asked = {true, true, true}};
     p.how = how;
     for (int list = 0; cases_all[list]; list++)
         for (const extreme_case *c = cases_all[list]; c->name; c++)

@@ -30,6 +30,7 @@ typedef struct ref_primitive {
     int32_t object; /* its index in the scene */
     bool present;   /* false where it is degenerate: nothing to hit */
     real3 rows[3];
+    real lengths[3]; /* of the rows */
     real3 center;
     real a, b;
     real askew; /* the condition number of its groups' transform, 1 where that is a rotation */
@@ -104,6 +105,9 @@ ref_face ref_nearest_face(const ref_primitive *p, int32_t part, real3 point);
 static inline real ref_scale(const ref_primitive *p, const ref_ray *ray, real t) {
     return real3_length(ray->o) + real_abs(t) * real3_length(ray->d) + p->extent;
 }
+
+/* How much the face nearest to a point bends along a unit direction: one over the radius. */
+real ref_curve(const ref_primitive *p, real3 point, real3 direction);
 
 /* The light seen along a ray in the model of src/tracer/classic.h. */
 void ref_trace(real light[3], const ref_scene *ref, const ref_ray *ray);

@@ -13,6 +13,11 @@ typedef struct own_face {
     real bends[2];     /* and how much: one over the radius */
 } own_face;
 
+static real3 to_own(const ref_primitive *p, real3 v) {
+    return (real3){real3_dot(p->rows[0], v), real3_dot(p->rows[1], v),
+                   real3_dot(p->rows[2], v)};
+}
+
 static real3 turn_back(const ref_primitive *p, real3 v) {
     return real3_add(real3_add(real3_scale(p->rows[0], v.x), real3_scale(p->rows[1], v.y)),
                      real3_scale(p->rows[2], v.z));
@@ -22,11 +27,11 @@ static real3 turn_back(const ref_primitive *p, real3 v) {
 static real world_bend(const ref_primitive *p, const own_face *f, real3 normal, real length) {
     real3 x, y;
     real own = real3_length(f->gradient), sum = 0;
+    if (f->bends[0] == 0 && f->bends[1] == 0) return 0;
     real3_frame(&x, &y, normal);
     for (int side = 0; side < 3; side++) {
         real3 step = side == 0 ? x : side == 1 ? y : normal, turned = {0, 0, 0};
-        real3 s = {real3_dot(p->rows[0], step), real3_dot(p->rows[1], step),
-                   real3_dot(p->rows[2], step)};
+        real3 s = to_own(p, step);
         for (int i = 0; i < 2; i++)
             turned =
                 real3_along(turned, f->bends[i] * own * real3_dot(f->ways[i], s), f->ways[i]);
@@ -42,10 +47,10 @@ static ref_face to_world(const ref_primitive *p, const own_face *f) {
     real length = real3_length(g), rows = 0;
     real3 normal = real3_scale(g, 1 / length);
     real distance = real_abs(f->value) / length;
-    real ends = real3_length(turn_back(p, f->beyond_grad));
-    if (f->beyond > 0 && ends > 0) distance = real_max(distance, f->beyond / ends);
+    real ends = f->beyond > 0 ? real3_length(turn_back(p, f->beyond_grad)) : 0;
+    if (ends > 0) distance = real_max(distance, f->beyond / ends);
     const real by[3] = {f->gradient.x, f->gradient.y, f->gradient.z};
-    for (int i = 0; i < 3; i++) rows += real_abs(by[i]) * real3_length(p->rows[i]);
+    for (int i = 0; i < 3; i++) rows += real_abs(by[i]) * p->lengths[i];
     return (ref_face){normal, distance, world_bend(p, f, normal, length),
                       p->askew * rows / length};
 }
@@ -133,6 +138,10 @@ static int own_faces(own_face *f, const ref_primitive *p, real3 q) {
     }
 }
 
+static int solid_faces(own_face *f, const ref_primitive *p, real3 point) {
+    return own_faces(f, p, to_own(p, real3_sub(point, p->center)));
+}
+
 static real segment_distance(real3 p, real3 a, real3 b) {
     real3 way = real3_sub(b, a);
     real square = real3_dot(way, way);
@@ -166,10 +175,7 @@ int ref_faces(ref_face faces[REF_FACES_MAX], const ref_primitive *p, int32_t par
         return 1;
     }
     own_face own[REF_FACES_MAX];
-    real3 off = real3_sub(point, p->center);
-    real3 q = {real3_dot(p->rows[0], off), real3_dot(p->rows[1], off),
-               real3_dot(p->rows[2], off)};
-    int count = own_faces(own, p, q);
+    int count = solid_faces(own, p, point);
     for (int i = 0; i < count; i++) faces[i] = to_world(p, &own[i]);
     return count;
 }
@@ -180,4 +186,23 @@ ref_face ref_nearest_face(const ref_primitive *p, int32_t part, real3 point) {
     for (int i = 1; i < count; i++)
         if (faces[i].distance < faces[best].distance) best = i;
     return faces[best];
+}
+
+real ref_curve(const ref_primitive *p, real3 point, real3 direction) {
+    if (p->shape == ZT_SHAPE_PLANE || p->triangle_count > 0) return 0;
+    own_face own[REF_FACES_MAX];
+    ref_face faces[REF_FACES_MAX];
+    int best = 0, count = solid_faces(own, p, point);
+    for (int i = 0; i < count; i++) {
+        faces[i] = to_world(p, &own[i]);
+        if (faces[i].distance < faces[best].distance) best = i;
+    }
+    const own_face *f = &own[best];
+    real3 step = to_own(p, direction);
+    real sum = 0, length = real3_length(f->gradient);
+    for (int i = 0; i < 2; i++) {
+        real along = real3_dot(f->ways[i], step);
+        sum += f->bends[i] * length * along * along;
+    }
+    return real_abs(sum) / real3_length(turn_back(p, f->gradient));
 }

@@ -70,40 +70,51 @@ ref_hit ref_nearest(const ref_scene *ref, const ref_ray *ray) {
     return nearest;
 }
 
-/* Ways to move a ray: not at all, to six sides, forth and back. */
-enum { MOVES = 9 };
+/* Ways to move a ray: to six sides, forth and back; by all of the tolerance, and by
+ * less and less of it: what is thinner than that may be met in between only. */
+enum { MOVES = 8, SHARES = 8 };
 
 static real3 move(int way, real3 d) {
     real3 x, y, z = real3_unit(d);
-    if (way == 0) return (real3){0, 0, 0};
-    if (way > 6) return real3_scale(z, way == 7 ? 1 : -1);
+    if (way > 5) return real3_scale(z, way == 6 ? 1 : -1);
     real3_frame(&x, &y, z);
     static const double sides[6][2] = {{1, 0},  {.5, .866},   {-.5, .866},
                                        {-1, 0}, {-.5, -.866}, {.5, -.866}};
-    return real3_add(real3_scale(x, sides[way - 1][0]), real3_scale(y, sides[way - 1][1]));
+    return real3_add(real3_scale(x, sides[way][0]), real3_scale(y, sides[way][1]));
+}
+
+/* Whether anything is met by a ray that is moved to a side: by `step`, or, where that is 0, for
+ * each thing by as much as its own numbers allow. */
+static bool moved_blocked(const ref_scene *ref, const ref_ray *ray, real to, real tolerance,
+                          int32_t only, real3 side, real step) {
+    for (int32_t i = 0; i < ref->scene->object_count; i++) {
+        const ref_primitive *p = &ref->primitives[i];
+        ref_hit hit;
+        if (!p->present || (only >= 0 && only != i)) continue;
+        /* How far away matters to how exact: that of the hit, or of the object. */
+        real far = ref_first(&hit, p, ray, 0, to) ? hit.t : 0;
+        if (far == 0 && isfinite(p->reach))
+            far = real3_length(real3_sub(real3_of(p->around), ray->o)) / real3_length(ray->d);
+        ref_ray moved = *ray;
+        real own = tolerance * ref_scale(p, ray, far) + p->grain;
+        moved.o = real3_along(ray->o, step > 0 ? step : own, side);
+        if (ref_first(&hit, p, &moved, 0, to)) return true;
+    }
+    return false;
 }
 
 bool ref_blocked(bool *sure, const ref_scene *ref, const ref_ray *ray, real to, real tolerance,
                  int32_t only) {
-    int blocked[MOVES] = {0}, sum = 0;
-    for (int way = 0; way < MOVES; way++) {
-        real3 side = move(way, ray->d);
-        for (int32_t i = 0; i < ref->scene->object_count && !blocked[way]; i++) {
-            const ref_primitive *p = &ref->primitives[i];
-            ref_hit hit;
-            if (!p->present || (only >= 0 && only != i)) continue;
-            /* How far away matters to how exact: that of the hit, or of the object. */
-            real far = ref_first(&hit, p, ray, 0, to) ? hit.t : 0;
-            if (far == 0 && isfinite(p->reach))
-                far =
-                    real3_length(real3_sub(real3_of(p->around), ray->o)) / real3_length(ray->d);
-            ref_ray moved = *ray;
-            real step = tolerance * ref_scale(p, ray, far) + p->grain;
-            moved.o = real3_along(ray->o, step, side);
-            blocked[way] = ref_first(&hit, p, &moved, 0, to);
+    bool blocked = moved_blocked(ref, ray, to, tolerance, only, (real3){0, 0, 0}, 0);
+    real whole = tolerance * (real3_length(ray->o) + to * real3_length(ray->d));
+    *sure = true;
+    for (int i = 0; i < SHARES && *sure; i++)
+        for (int way = 0; way < MOVES && *sure; way++) {
+            real share = (real)1 / (1 << i);
+            real3 side = real3_scale(move(way, ray->d), share);
+            *sure = moved_blocked(ref, ray, to, tolerance, only, side, 0) == blocked;
+            if (*sure && isfinite((double)to)) /* and all alike, by what the ray's allow */
+                *sure = moved_blocked(ref, ray, to, tolerance, only, side, whole) == blocked;
         }
-        sum += blocked[way];
-    }
-    *sure = sum == 0 || sum == MOVES;
-    return blocked[0];
+    return blocked;
 }

@@ -24,6 +24,7 @@ static void place(ref_primitive *p, const affine *world, const affine *own, real
                   real reach) {
     affine whole = affine_mul(world, own);
     p->present = affine_inverse_rows(p->rows, &whole);
+    for (int i = 0; i < 3; i++) p->lengths[i] = real3_length(p->rows[i]);
     p->center = whole.shift;
     p->place = whole;
     real3 back[3];

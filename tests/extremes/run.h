@@ -16,15 +16,20 @@ typedef enum run_how {
     RUN_ANSWERS /* not judged: for the digest alone */
 } run_how;
 
+enum { RUN_ALL_PRECISIONS = (1 << PROBE_PRECISIONS) - 1 };
+
 typedef struct run_result {
     tally tallies[PROBE_PRECISIONS];
     int64_t chose_single; /* scenes for which auto did */
     int64_t scenes;
+    bool asked[PROBE_PRECISIONS];
     uint64_t digest[PROBE_PRECISIONS]; /* of all answers, bit by bit */
 } run_result;
 
-/* Scenes from number `first` on, `count` of them. False where the tracer could not be opened.
- */
-bool run_case(run_result *result, const extreme_case *c, int first, int count, run_how how);
+/* Scenes from number `first` on, `count` of them, in the precisions of which `precisions` has
+ * the bit; where `first` < 0, those of the short run, `count` of them where that is above 0.
+ * False where the tracer could not be opened. */
+bool run_case(run_result *result, const extreme_case *c, int first, int count,
+              unsigned precisions, run_how how);
 
 #endif

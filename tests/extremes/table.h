@@ -15,6 +15,8 @@ typedef struct limit {
 extern const limit limits[];
 const limit *limit_find(const char *name, probe_precision precision);
 
+extern const char *const table_precisions[]; /* their names */
+
 void table_begin(FILE *csv);
 /* One case, a line for each precision; how many of them do not hold, known limits left out. */
 int table_case(FILE *csv, const extreme_case *c, const run_result *result);

@@ -22,8 +22,8 @@ static void run(const char *name, mock_lie lie) {
             extreme_case less = *c;
             less.rays = c->rays < 32 ? c->rays : 32;
             less.bounces = c->bounces < 2 ? c->bounces : 2;
-            assert_true(
-                run_case(&result, &less, 0, 3, lie == MOCK_HONEST ? RUN_TOLD : RUN_JUDGED));
+            assert_true(run_case(&result, &less, 0, 3, RUN_ALL_PRECISIONS,
+                                 lie == MOCK_HONEST ? RUN_TOLD : RUN_JUDGED));
             return;
         }
     fail_msg("no case %s", name);
