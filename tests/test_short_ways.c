@@ -2,6 +2,7 @@
  * are not asked; and scenes in which nothing moves have kernels of their own. Of random rooms
  * full of walls, panes and open sides the light, the paths and what is noted in footprints are
  * those of doing everything, bit by bit. A number given to the program draws others. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -202,8 +203,64 @@ static void test_rooms(void **state) {
     assert_true(sum.flat_batches > sum.batches / 40);
 }
 
+/* Of mostly empty pictures tiles are left out before there are rays: small things, planes that
+ * end at a horizon and single panes, near and far, are all there nevertheless. */
+static void make_emptiness(test_scene *s) {
+    scene_begin(s);
+    scene_material(s, (vec3){1, .5, .3}, 0);
+    scene_material(s, white, .5);
+    if (chance(.3)) scene_plane(s, test_direction(&seed), between(-2, 2), 0);
+    double scale = pow(10, between(-3, 6));
+    for (int i = (int)between(0, 4); i > 0; i--) {
+        vec3 at = vec3_scale(somewhere(6), scale);
+        double radius = scale * between(.001, .2);
+        if (chance(.5))
+            scene_sphere(s, at, radius, i % 2);
+        else
+            scene_triangle(s, at, vec3_add(at, somewhere(radius)),
+                           vec3_add(at, somewhere(10 * radius)), i % 2);
+    }
+    scene_ambient(s, white, 1);
+    zt_camera *camera = &s->scene.camera;
+    camera->position = vec3_scale(somewhere(1), scale);
+    camera->rotation = quat_axis_angle(test_direction(&seed), between(-3, 3));
+    s->scene.reflection_depth = 2;
+}
+
+static void test_empty_tiles(void **state) {
+    (void)state;
+    enum { PICTURES = 400, WIDTH = 100, HEIGHT = 72, SAMPLES = 4 };
+    static test_scene s;
+    int64_t left_out = 0, lit = 0;
+    for (int i = 0; i < PICTURES; i++) {
+        make_emptiness(&s);
+        zt_exposure exposure = zt_exposure_of(&s.scene);
+        zt_sampling sampling = {.seed = (uint32_t)i};
+        sampling.min = sampling.max = i % 2 ? 1 : SAMPLES;
+        precision = i % 4 < 2 ? ZT_PRECISION_SINGLE : ZT_PRECISION_DOUBLE;
+        zt_render_count count;
+        setenv("ZOETROPE_EVERYTHING", "1", 1);
+        zt_image *all = render_exposure(&count, &exposure, WIDTH, HEIGHT, sampling, 2);
+        assert_int_equal(count.rays.primary, (int64_t)WIDTH * HEIGHT * sampling.max);
+        unsetenv("ZOETROPE_EVERYTHING");
+        zt_image *own = render_exposure(&count, &exposure, WIDTH, HEIGHT, sampling, 2);
+        assert_int_equal(count.rays.primary + count.rays.primary_avoided,
+                         (int64_t)WIDTH * HEIGHT * sampling.max);
+        assert_memory_equal(own->pixels, all->pixels, 4 * WIDTH * HEIGHT * sizeof *all->pixels);
+        left_out += count.rays.primary_avoided > 0;
+        for (int k = 0; k < WIDTH * HEIGHT; k++) lit += all->pixels[4 * k] > 0;
+        zt_image_free(&all);
+        zt_image_free(&own);
+    }
+    print_message("%d of %d pictures have tiles that are left out; %d pixels are not empty\n",
+                  (int)left_out, PICTURES, (int)lit);
+    assert_true(left_out > PICTURES / 2);
+    assert_true(lit > PICTURES * 20);
+}
+
 int main(int count, char **arguments) {
     if (count > 1) seed = strtoull(arguments[1], NULL, 10);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rooms)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rooms),
+                                       cmocka_unit_test(test_empty_tiles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -238,6 +238,23 @@ ZT_CLONES static void see_plainly(zt_rays *restrict rays, const zt_lens *lens,
                 plus(l.ahead, (double)x[i], l.right, (double)y[i], l.down));
 }
 
+static inline double least_of(double a, double b) { return b < a ? b : a; }
+static inline double most_of(double a, double b) { return b > a ? b : a; }
+
+/* Roundings keep the order of numbers, so that all is between the corners. */
+bool zt_lens_bounds(vec3 *low, vec3 *high, const zt_lens *lens, int x0, int y0, int x1,
+                    int y1) {
+    const view *l = &lens->still;
+    if (lens->kind != ZT_LENS_PERSPECTIVE || lens->moves || lens->opens) return false;
+    *low = *high = plus(l->ahead, x0, l->right, y0, l->down);
+    for (int i = 1; i < 4; i++) {
+        vec3 d = plus(l->ahead, i & 1 ? x1 : x0, l->right, i & 2 ? y1 : y0, l->down);
+        *low = (vec3){least_of(low->x, d.x), least_of(low->y, d.y), least_of(low->z, d.z)};
+        *high = (vec3){most_of(high->x, d.x), most_of(high->y, d.y), most_of(high->z, d.z)};
+    }
+    return true;
+}
+
 /* Loops of their own for what opens, and for what moves. */
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 #define NOT_NULL      __attribute__((nonnull))

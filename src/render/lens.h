@@ -22,6 +22,11 @@ zt_status zt_lens_prepare(zt_lens **lens, const zt_exposure *exposure, int width
 bool zt_lens_has_aperture(const zt_lens *lens);
 bool zt_lens_moves(const zt_lens *lens);
 
+/* Bounds of the directions of all rays through a part of the picture, ends included, as
+ * zt_lens_rays makes them; false where they may begin elsewhere than at the camera's place, or
+ * bounds are not known. */
+bool zt_lens_bounds(vec3 *low, vec3 *high, const zt_lens *lens, int x0, int y0, int x1, int y1);
+
 /* Makes the batch's rays the ones through the places (x[i], y[i]) of the picture, in pixels
  * from its top left corner, `count` of them; at their times, which are read where the lens
  * moves; and through the point of its opening that (u[i], v[i]) of the unit square stand for,

@@ -100,6 +100,11 @@ static inline void stream_run(float *to, const float *r, const float *g, const f
 #endif
 }
 
+void zt_pixels_clear(float *pixels, int count, bool transparent) {
+    const float bare[4] = {0, 0, 0, transparent ? 0 : 1};
+    for (int i = 0; i < count; i++) memcpy(pixels + 4 * (size_t)i, bare, sizeof bare);
+}
+
 void zt_pixels_fill(float *restrict pixels, int width, const zt_radiance *restrict sum,
                     const int32_t *restrict column, const int32_t *restrict row, int count,
                     bool whole) {

@@ -19,6 +19,9 @@ void zt_pixels_average(zt_radiance *sum, const int32_t *taken, int count, bool t
 /* The same for a single sample of each pixel: what is not finite becomes 0. */
 int zt_pixels_settle(zt_radiance *light, int count, bool transparent);
 
+/* Makes pixels side by side those of rays that met nothing. */
+void zt_pixels_clear(float *pixels, int count, bool transparent);
+
 /* Writes means to an image of such a width, at the listed places. `whole`: of each row of four
  * pixels all are listed, one after the other. */
 void zt_pixels_fill(float *pixels, int width, const zt_radiance *mean, const int32_t *column,

@@ -188,6 +188,31 @@ static bool render_parts(bool *rendered, zt_frame *f, zt_render_thread *own, til
     return true;
 }
 
+/* Whether it is known beforehand that no ray of a tile meets anything; asked where there is
+ * nothing beside it either. */
+static bool is_bare(const zt_frame *f, const zt_render_thread *own, tile area) {
+    const zt_ready *scene = f->job->scene;
+    vec3 low, high;
+    return own->bare && f->even && scene->plain && !f->keeps && !f->job->warp &&
+           zt_lens_bounds(&low, &high, f->job->lens, area.x, area.y, area.x + area.width,
+                          area.y + area.height) &&
+           !scene->kernel->may_meet(scene->tracer, low, high);
+}
+
+/* A tile of which that is so: its samples need not be taken. */
+static void fill_bare(zt_frame *f, zt_render_thread *own, tile area) {
+    const int64_t samples = (int64_t)area.width * area.height * f->job->sampling.max;
+    const int64_t batches = (samples + ZT_BATCH - 1) / ZT_BATCH;
+    for (int y = area.y; y < area.y + area.height; y++)
+        zt_pixels_clear(f->image->pixels +
+                            4 * ((size_t)y * (size_t)f->image->width + (size_t)area.x),
+                        area.width, f->job->transparent);
+    own->count.samples += samples;
+    own->count.rays.primary_avoided += samples;
+    own->count.rays.batches += batches;
+    own->count.rays.bare_batches += batches;
+}
+
 static bool render_tile(zt_frame *f, int index, int worker) {
     int x = index % f->tile_columns * TILE_SIDE, y = index / f->tile_columns * TILE_SIDE;
     tile area = {x, y, min_int(TILE_SIDE, f->image->width - x),
@@ -212,6 +237,10 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         zt_reuse_stamp(f, index);
         return true;
     }
+    if (is_bare(f, own, area)) {
+        fill_bare(f, own, area);
+        return true;
+    }
     bool done = render_blocks(f, own, area, index, 0, ZT_BATCH, most);
     if (f->keeps && done) zt_reuse_keep(f, index, x, y, area.width, area.height);
     return done;
@@ -220,6 +249,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
 static void render_run(void *user, int index, int worker) {
     zt_frame *f = user;
     int end = min_int((index + 1) * f->run, f->tile_count);
+    f->work->threads[worker].bare = true;
     for (int tile = index * f->run; tile < end; tile++) {
         if (atomic_load_explicit(&f->stopped, memory_order_relaxed)) return;
         if (!render_tile(f, tile, worker))

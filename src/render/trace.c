@@ -45,6 +45,7 @@ bool zt_frame_trace(zt_frame *f, zt_render_thread *own, int count, int now) {
     zt_lens_rays(&own->rays, job->lens, p->x, p->y, p->u, p->v, now * count);
     own->light.counts = (zt_ray_counts){0};
     bool met = f->trace(&own->light, job->scene->tracer, &own->rays, own->kernel);
+    own->bare = !met;
     own->count.samples += now * count;
     zt_ray_counts_add(&own->count.rays, &own->light.counts);
     if (turns && met) turn_light(&own->light, &own->rays, count, now);

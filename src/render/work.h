@@ -28,6 +28,7 @@ typedef struct zt_render_thread {
     zt_radiance light;
     zt_canvas_sums sums;
     void *kernel; /* what it works with */
+    bool bare; /* the last rays met nothing; or there were none before in this run of tiles */
     zt_render_count count;
 } zt_render_thread;
 

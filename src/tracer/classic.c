@@ -214,5 +214,19 @@ static bool trace_plain(zt_radiance *light, const zt_tracer *tracer, const zt_ra
     return trace_any(light, tracer, given, memory, true);
 }
 
-const zt_kernel ZT_KERNEL_NAME(zt_kernel) = {trace, trace_plain, ZT_KERNEL_NAME(zt_work_probe),
-                                             sizeof(zt_work)};
+static bool may_meet(const zt_tracer *tracer, vec3 low, vec3 high) {
+    /* No longer than 1, as directions of bundles are; their own have a few roundings. */
+    const double scale =
+        1 / (most_of(-low.x, high.x) + most_of(-low.y, high.y) + most_of(-low.z, high.z));
+    const double room = 16 * (double)REAL_ROUNDING;
+    zt_bundle bundle = {
+        .directions = {{(real)(low.x * scale - room), (real)(low.y * scale - room),
+                        (real)(low.z * scale - room)},
+                       {(real)(high.x * scale + room), (real)(high.y * scale + room),
+                        (real)(high.z * scale + room)}},
+        .source = -1};
+    return ZT_KERNEL_NAME(zt_may_meet)(&bundle, tracer);
+}
+
+const zt_kernel ZT_KERNEL_NAME(zt_kernel) = {trace, trace_plain, may_meet,
+                                             ZT_KERNEL_NAME(zt_work_probe), sizeof(zt_work)};

@@ -115,6 +115,9 @@ typedef struct zt_kernel {
     /* The same without what most frames miss: for scenes that are plain (zt_ready), and rays of
      * which neither path nor footprint is asked for. */
     zt_trace *trace_plain;
+    /* False only where no ray from the camera's own place meets anything whose direction, of
+     * any length, lies between two. */
+    bool (*may_meet)(const zt_tracer *tracer, vec3 low, vec3 high);
     void (*probe)(const zt_tracer *tracer, zt_probe *probes, int count, void *work);
     size_t work_size; /* of what a thread works with, aligned to 64 bytes */
 } zt_kernel;

@@ -209,7 +209,7 @@ static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_rays *giv
 }
 
 int ZT_KERNEL_NAME(zt_work_light)(zt_work *w, zt_ray_counts *counts, const zt_tracer *tracer,
-                                   const zt_rays *given, int32_t depth) {
+                                  const zt_rays *given, int32_t depth) {
     int traced = 0;
     add_ambient(w, tracer);
     if (tracer->reach) traced = light_reached(w, tracer, given, depth);

@@ -100,9 +100,8 @@ void ZT_KERNEL_NAME(zt_work_shine)(zt_work *work, const zt_tracer *tracer, int32
                                    bool hidden, const zt_rays *given, int32_t depth);
 
 /* Sums up the light at the points; returns how many shadow rays that took. */
-int ZT_KERNEL_NAME(zt_work_light)(zt_work *work, zt_ray_counts *counts,
-                                   const zt_tracer *tracer, const zt_rays *given,
-                                   int32_t depth);
+int ZT_KERNEL_NAME(zt_work_light)(zt_work *work, zt_ray_counts *counts, const zt_tracer *tracer,
+                                  const zt_rays *given, int32_t depth);
 
 /* ---- probes (tracer/probes.c)
  * ----------------------------------------------------------------
