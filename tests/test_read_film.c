@@ -96,10 +96,10 @@ static void samples(void **state) {
         /* As many for all is no choice. */
         {", samples: { min: 16, max: 16, error: 0.01 }", 16, 16, 0, false},
         {", quality: even", 1, 1, 0, false},
-        {", quality: edges", 1, 64, 0.004, true},
-        {", quality: edges, samples: 16", 1, 16, 0.004, true},
-        {", samples: { max: 128 }, quality: edges", 1, 128, 0.004, true},
-        {", samples: { min: 2, error: 0.01 }, quality: edges", 2, 64, 0.01, true},
+        {", quality: edges", 1, 64, 0.01, true},
+        {", quality: edges, samples: 16", 1, 16, 0.01, true},
+        {", samples: { max: 128 }, quality: edges", 1, 128, 0.01, true},
+        {", samples: { min: 2, error: 0.02 }, quality: edges", 2, 64, 0.02, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         zt_sampling s = film_of_words(cases[i].words).sampling;

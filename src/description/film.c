@@ -16,7 +16,7 @@ enum { REFLECTIONS_MAX = 1000, SAMPLES_MAX = 65536, FRAME_COUNT_MAX = 100 * 1000
  * many more at most than at least; and the error that refined edges may have, half of what a
  * display of 8 bits can tell apart in the middle of its range. */
 enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64, MAX_PER_MIN = 4 };
-#define EDGES_ERROR 0.004
+#define EDGES_ERROR 0.01
 
 /* A smaller error is none that can be estimated. */
 #define ERROR_LEAST 1e-6
