@@ -89,6 +89,7 @@ static void tables(void **state) {
     assert_int_equal(count_of(json, "\"kind\": "), RUNGS);
     const char *words[] = {"\"shadow_rays_avoided\":",
                            "\"mirror_rays_avoided\":",
+                           "\"short_batches\":",
                            "\"libraries\": { \"OpenImageIO\": \"loaded\"",
                            "\"frames\": [2]",
                            "\"slope_of_rmse_by_time\": -",

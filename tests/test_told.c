@@ -88,6 +88,27 @@ static void test_stats(void **state) {
     assert_contains(r->out, "libraries      OpenImageIO (image files)\n");
 }
 
+/* What a film's images share is neither converted nor added up again; and rays that meet
+ * nothing take a short way. */
+static void test_spared(void **state) {
+    (void)state;
+    write_text("house.yaml", house);
+    const run *r = zoetrope("render house.yaml --stats -o house.mp4");
+    assert_int_equal(r->code, 0);
+    const int64_t tiles = 10 * (64 / 16) * (48 / 16);
+    assert_int_equal(number_after(r->out, "way out        of"), tiles);
+    const int64_t unconverted = number_after(strstr(r->out, "way out"), "tiles "),
+                  unsummed = number_after(r->out, "not converted again, ");
+    /* Of ten frames five are held. An encoder that has not done with an image leaves nothing of
+     * it for the next one. */
+    assert_in_range(unconverted, 1, tiles - 1);
+    assert_in_range(unsummed, tiles / 4, tiles - tiles / 10);
+    assert_true(number_after(r->out, "batches of rays meet nothing, ") >= 0);
+    r = zoetrope("render house.yaml --stats -o house.hash");
+    assert_null(strstr(r->out, "way out"));
+    assert_true(number_after(r->out, "short ways") >= 0);
+}
+
 /* A mesh that is nowhere near a ray is not built; but one that a mirror shows is. */
 static void test_unmet(void **state) {
     (void)state;
@@ -127,6 +148,7 @@ int main(void) {
         cmocka_unit_test(test_unmet),
         cmocka_unit_test(test_explain),
         cmocka_unit_test(test_stats),
+        cmocka_unit_test(test_spared),
     };
     return cmocka_run_group_tests(tests, enter_directory, leave_directory);
 }

@@ -37,9 +37,12 @@ typedef struct zt_film_order {
 
 /* What became of the frames. */
 typedef struct zt_film_result {
-    int64_t count;                /* of the frames, or of the part's */
-    int64_t rendered, held, kept; /* rendered; the same as another one; there already */
-    int64_t verified;             /* of the latter, rendered again and found to be the same */
+    int64_t count;                 /* of the frames, or of the part's */
+    int64_t rendered, held, kept;  /* rendered; the same as another one; there already */
+    int64_t verified;              /* of the latter, rendered again and found to be the same */
+    int64_t tiles;                 /* of all images that were sent out; of which so many */
+    int64_t unconverted, unsummed; /* were not converted, and not added up, again, since they
+                                      were the same as in an image before */
 } zt_film_result;
 
 /* Renders what is missing.

@@ -36,6 +36,7 @@ typedef struct zt_rung {
     double cpu_s;   /* of all threads, for a frame */
     double primary_rays, shadow_rays, mirror_rays;
     double shadow_rays_avoided, mirror_rays_avoided; /* as in zt_ray_stats */
+    double batches, short_batches; /* as in zt_stats: bare and flat ones together */
     double peak_bytes;   /* the most memory of the process meanwhile, its largest value */
     double left_out;     /* samples of a frame that were not finite */
     zt_difference error; /* its rmse is the root of the mean square */

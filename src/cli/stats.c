@@ -57,6 +57,29 @@ static void print_libraries(void) {
     }
 }
 
+/* Batches of rays that did not go the whole way. */
+static void print_short_ways(const zt_stats *s) {
+    printf("%-*s ", LABEL_WIDTH, "short ways");
+    print_number(s->bare_batches);
+    fputs(" of ", stdout);
+    print_number(s->batches);
+    fputs(" batches of rays meet nothing, ", stdout);
+    print_number(s->flat_batches);
+    puts(" one flat thing that nothing shadows and that mirrors nothing");
+}
+
+/* Tiles of images that were the same as before when they went out. */
+static void print_way_out(const zt_film_result *r) {
+    if (r->unconverted + r->unsummed == 0) return;
+    printf("%-*s of ", LABEL_WIDTH, "way out");
+    print_number(r->tiles);
+    fputs(" tiles ", stdout);
+    print_number(r->unconverted);
+    fputs(" not converted again, ", stdout);
+    print_number(r->unsummed);
+    puts(" not added up again");
+}
+
 /* What earlier runs had kept, and what there is for later ones. */
 static void print_keepsakes(const zt_stats *s) {
     if (s->found == 0 && s->keepsakes == 0) return;
@@ -85,6 +108,8 @@ void zt_stats_print(const zt_renderer *renderer, const zt_film_result *result, d
     print_number(s.tiles);
     print_share(s.copied_tiles, s.tiles);
     putchar('\n');
+    print_short_ways(&s);
+    print_way_out(result);
     print_keepsakes(&s);
     int unmet = 0;
     zt_renderer_unmet(renderer, print_unmet, &unmet);

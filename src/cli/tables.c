@@ -24,6 +24,8 @@ static const column columns[] = {
     {"mirror_rays", offsetof(zt_rung, mirror_rays)},
     {"shadow_rays_avoided", offsetof(zt_rung, shadow_rays_avoided)},
     {"mirror_rays_avoided", offsetof(zt_rung, mirror_rays_avoided)},
+    {"batches", offsetof(zt_rung, batches)},
+    {"short_batches", offsetof(zt_rung, short_batches)},
     {"peak_bytes", offsetof(zt_rung, peak_bytes)},
     {"rmse", offsetof(zt_rung, error.rmse)},
     {"relative_mse", offsetof(zt_rung, error.relative_mse)},

@@ -44,6 +44,11 @@ static void drop_frame(void *state, void *made) {
     m->door->drop(m->state, made);
 }
 
+static int64_t spared_tiles(void *state) {
+    movie *m = state;
+    return m->door->spared(m->state);
+}
+
 static zt_status close_movie(void *state, bool keep) {
     movie *m = state;
     zt_status status = m->door->close(m->state, keep);
@@ -63,4 +68,5 @@ const zt_sink zt_sink_movie = {.what = "a movie",
                                .make = make_frame,
                                .write = write_frame,
                                .drop = drop_frame,
+                               .spared = spared_tiles,
                                .close = close_movie};

@@ -167,6 +167,11 @@ zt_status zt_output_write(zt_output *output, const zt_image *image, int64_t fram
     return zt_output_put(output, made, frame);
 }
 
+int64_t zt_output_spared(const zt_output *output) {
+    const zt_sink *sink = output->sink;
+    return sink->spared ? sink->spared(output->state) : 0;
+}
+
 zt_status zt_output_close(zt_output **output) {
     if (!*output) return ZT_OK;
     bool some = (*output)->written || (*output)->format.plan;

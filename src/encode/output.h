@@ -15,6 +15,10 @@ zt_status zt_output_put(zt_output *output, void *made, int64_t frame);
 /* Frees what was made and will not be written. */
 void zt_output_drop(zt_output *output, void *made);
 
+/* How many tiles of images were not converted, since they were the same as before; once none is
+ * being made any more. */
+int64_t zt_output_spared(const zt_output *output);
+
 /* The module that opening an output for `target` loads (base/module.h), or NULL. */
 const char *zt_output_module(const char *target);
 

@@ -26,6 +26,8 @@ typedef struct zt_sink {
     zt_status (*write)(void *state, void *made, int64_t frame);
     /* Frees what was made and will not be written. */
     void (*drop)(void *state, void *made);
+    /* zt_output_spared(); NULL: none. */
+    int64_t (*spared)(void *state);
     /* Frees the state. `keep`: complete the files and give them their names, and tell where
      * that fails; else remove what is unfinished, but for what is recorded. */
     zt_status (*close)(void *state, bool keep);

@@ -182,6 +182,11 @@ static bool movie_wants(void *state, int64_t position) {
     return !m->growth.kept[position];
 }
 
+static int64_t spared_tiles(void *state) {
+    const movie *m = state;
+    return zt_video_pixels_spared(m->pixels);
+}
+
 static void drop_frame(void *state, void *made) {
     (void)state;
     picture *ready = made;
@@ -316,5 +321,5 @@ static zt_status close_movie(void *state, bool keep) {
     return status;
 }
 
-ZT_MODULE_DOOR(zt_video_door, video) = {open_movie,  movie_wants, make_frame,
-                                        write_frame, drop_frame,  close_movie};
+ZT_MODULE_DOOR(zt_video_door, video) = {open_movie, movie_wants,  make_frame, write_frame,
+                                        drop_frame, spared_tiles, close_movie};

@@ -18,6 +18,7 @@ typedef struct zt_video_door {
     zt_status (*make)(void **made, void *state, const zt_image *image, int64_t frame);
     zt_status (*write)(void *state, void *made, int64_t frame);
     void (*drop)(void *state, void *made);
+    int64_t (*spared)(void *state);
     zt_status (*close)(void *state, bool keep);
 } zt_video_door;
 

@@ -203,12 +203,14 @@ static bool is_shown(const zt_image *image, const uint64_t *stamps, int tile) {
 static void convert(zt_video_slate *slate, const zt_video_pixels *p, const zt_image *image,
                     lines *l) {
     int columns = zt_stamp_tiles(image->width), rows = zt_stamp_tiles(image->height);
+    int64_t spared = (int64_t)columns * rows;
     for (int row = 0; row < rows; row++) {
         int first = row * columns, begin = row * ZT_STAMP_SIDE, end = begin + ZT_STAMP_SIDE;
         if (end > image->height) end = image->height;
         for (int from = 0, to; from < columns; from = to + 1) {
             for (to = from; to < columns && !is_shown(image, slate->stamps, first + to);) to++;
             span at = {from * ZT_STAMP_SIDE, to * ZT_STAMP_SIDE};
+            spared -= to - from;
             if (at.last > image->width) at.last = image->width;
             for (int y = begin; y < end && from < to; y++)
                 convert_span(slate->frame, p, y, at, image, l);
@@ -219,6 +221,11 @@ static void convert(zt_video_slate *slate, const zt_video_pixels *p, const zt_im
         memcpy(slate->stamps, image->stamps, size);
     else
         memset(slate->stamps, 0, size);
+    zt_video_slates_spare(p->slates, spared);
+}
+
+int64_t zt_video_pixels_spared(const zt_video_pixels *p) {
+    return zt_video_slates_spared(p->slates);
 }
 
 static zt_status take_slate(zt_video_slate **slate, const zt_video_pixels *p, int width,

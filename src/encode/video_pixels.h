@@ -29,6 +29,9 @@ zt_status zt_video_pixels_like(AVFrame **frame, const zt_video_pixels *converter
 zt_status zt_video_pixels_convert(AVFrame **frame, const zt_video_pixels *converter,
                                   const zt_image *image, const zt_video_ear *ear);
 
+/* How many tiles of images were not converted, since they were the same as before. */
+int64_t zt_video_pixels_spared(const zt_video_pixels *converter);
+
 /* The peak signal-to-noise ratio over all numbers of all components of `sent`, INFINITY where
  * they are the same; negative where the frames cannot be compared. */
 double zt_video_psnr(const AVFrame *found, const AVFrame *sent);

@@ -10,7 +10,7 @@ struct zt_video_slates {
     mtx_t mutex;
     zt_video_slate **all;
     int count;
-    int64_t turn;
+    int64_t turn, spared;
 };
 
 zt_status zt_video_slates_open(zt_video_slates **out) {
@@ -102,3 +102,11 @@ void zt_video_slates_give(zt_video_slates *s, zt_video_slate *slate) {
     slate->turn = ++s->turn;
     mtx_unlock(&s->mutex);
 }
+
+void zt_video_slates_spare(zt_video_slates *s, int64_t tiles) {
+    mtx_lock(&s->mutex);
+    s->spared += tiles;
+    mtx_unlock(&s->mutex);
+}
+
+int64_t zt_video_slates_spared(const zt_video_slates *s) { return s->spared; }

@@ -35,4 +35,9 @@ zt_status zt_video_slates_take(zt_video_slate **slate, zt_video_slates *slates, 
                                int height, enum AVPixelFormat pixels, const zt_video_ear *ear);
 void zt_video_slates_give(zt_video_slates *slates, zt_video_slate *slate);
 
+/* Counts tiles that were not converted, as a slate showed them already; and how many these are
+ * so far, once nobody counts any more. */
+void zt_video_slates_spare(zt_video_slates *slates, int64_t tiles);
+int64_t zt_video_slates_spared(const zt_video_slates *slates);
+
 #endif

@@ -8,7 +8,9 @@
 
 #include "base/diag.h"
 #include "base/text.h"
+#include "encode/output.h"
 #include "image/file.h"
+#include "image/stamps.h"
 #include "sequence/filming.h"
 #include "sequence/keepsakes.h"
 #include "sequence/opening.h"
@@ -189,7 +191,12 @@ static zt_status make_into_output(zt_filming *m) {
     ZT_TRY(zt_filming_open(m, note_image));
     zt_status status = open_and_begin(m, &format);
     if (status == ZT_OK) status = make_film(m);
-    zt_status written = zt_filming_close(m), closed = zt_output_close(&m->output);
+    zt_status written = zt_filming_close(m);
+    if (m->output) m->result->unconverted = zt_output_spared(m->output);
+    m->result->unsummed = zt_sums_spared(m->sums);
+    m->result->tiles = (m->result->rendered + m->result->held) * zt_stamp_tiles(format.width) *
+                       zt_stamp_tiles(format.height);
+    zt_status closed = zt_output_close(&m->output);
     if (written != ZT_OK) status = written;
     return closed != ZT_OK ? closed : status;
 }

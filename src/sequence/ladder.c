@@ -163,6 +163,8 @@ static void add_cost(zt_rung *rung, const cost *k, double write_s, double pixels
     rung->mirror_rays += (double)k->frame.rays.mirror;
     rung->shadow_rays_avoided += (double)k->frame.rays.shadow_avoided;
     rung->mirror_rays_avoided += (double)k->frame.rays.mirror_avoided;
+    rung->batches += (double)k->frame.rays.batches;
+    rung->short_batches += (double)(k->frame.rays.bare_batches + k->frame.rays.flat_batches);
     rung->samples += (double)k->frame.rays.primary / pixels;
     rung->peak_bytes = fmax(rung->peak_bytes, (double)zt_usage_peak());
     rung->left_out += (double)k->frame.left_out_count;
@@ -244,6 +246,8 @@ static void average(zt_ladder *ladder, int pairs) {
                            &rung->mirror_rays,
                            &rung->shadow_rays_avoided,
                            &rung->mirror_rays_avoided,
+                           &rung->batches,
+                           &rung->short_batches,
                            &rung->samples,
                            &rung->left_out,
                            &rung->error.rmse,

@@ -10,7 +10,7 @@
 /* The tiles of the image that was added up last with it. */
 typedef struct tally {
     struct tally *next;
-    int count;
+    int count, spared; /* tiles; of the last image, those that were known */
     uint64_t *stamps;
     zt_hash *tiles;
 } tally;
@@ -18,6 +18,7 @@ typedef struct tally {
 struct zt_sums {
     mtx_t mutex;
     tally *idle; /* those that no thread has; the last one first */
+    int64_t spared;
 };
 
 zt_status zt_sums_open(zt_sums **out) {
@@ -80,6 +81,7 @@ static void give_tally(zt_sums *s, tally *t) {
     mtx_lock(&s->mutex);
     t->next = s->idle;
     s->idle = t;
+    s->spared += t->spared;
     mtx_unlock(&s->mutex);
 }
 
@@ -97,14 +99,18 @@ static zt_hash sum_tile(const zt_image *image, int left, int top) {
 
 static zt_hash sum_tiles(tally *t, const zt_image *image) {
     int columns = zt_stamp_tiles(image->width);
+    t->spared = t->count;
     for (int i = 0; i < t->count; i++) {
         uint64_t stamp = image->stamps ? image->stamps[i] : 0;
         if (stamp && stamp == t->stamps[i]) continue;
         t->tiles[i] = sum_tile(image, i % columns * ZT_STAMP_SIDE, i / columns * ZT_STAMP_SIDE);
         t->stamps[i] = stamp;
+        t->spared--;
     }
     return zt_hash_bytes(t->tiles, (size_t)t->count * sizeof *t->tiles);
 }
+
+int64_t zt_sums_spared(const zt_sums *s) { return s->spared; }
 
 zt_status zt_sums_of(zt_hash *checksum, zt_sums *sums, const zt_image *image) {
     zt_hash parts[1 + ZT_IMAGE_CHANNELS_MAX];

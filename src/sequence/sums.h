@@ -10,6 +10,9 @@ typedef struct zt_sums zt_sums;
 zt_status zt_sums_open(zt_sums **sums);
 void zt_sums_close(zt_sums **sums);
 
+/* How many tiles were not added up again; once none is being added up any more. */
+int64_t zt_sums_spared(const zt_sums *sums);
+
 /* A checksum of all numbers of an image, further channels too. `sums` may be NULL: nothing of
  * it is known. ZT_EMEMORY. */
 zt_status zt_sums_of(zt_hash *checksum, zt_sums *sums, const zt_image *image);
