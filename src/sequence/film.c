@@ -144,6 +144,8 @@ static zt_status choose_wishes(zt_filming *m) {
     return ZT_OK;
 }
 
+static zt_status begin(void *user) { return zt_filming_begin(user); }
+
 /* Opens the output, and meanwhile renders the first frame, if nothing is known of earlier runs:
  * then it is wanted, but for what an encoder may have kept of one that was killed early. */
 static zt_status open_and_begin(zt_filming *m, const zt_output_format *format) {
@@ -152,20 +154,18 @@ static zt_status open_and_begin(zt_filming *m, const zt_output_format *format) {
                           .options = m->wishes,
                           .listener = m->renderer->listener,
                           .watcher = m->watcher};
+    const zt_watcher meanwhile = zt_opening_watcher(&opening);
     const zt_manifest *known = m->notes.known;
-    bool begins = zt_opening_takes(&opening) && !m->timed &&
-                  (m->order->overwrites || !known || known->record_count == 0);
-    zt_status begun = begins ? zt_renderer_start(m->renderer) : ZT_OK;
-    if (begun != ZT_OK) return begun;
-    zt_opening_begin(&opening);
-    if (begins) {
-        const zt_watcher meanwhile = zt_opening_watcher(&opening);
+    if (zt_opening_takes(&opening) && !m->timed &&
+        (m->order->overwrites || !known || known->record_count == 0)) {
+        ZT_TRY(zt_renderer_start(m->renderer));
+        opening.work = begin;
+        opening.user = m;
         m->watcher = &meanwhile;
-        begun = zt_filming_begin(m);
-        m->watcher = opening.watcher;
     }
-    zt_status opened = zt_opening_end(&m->output, &opening);
-    return opened != ZT_OK ? opened : begun;
+    zt_status status = zt_opening_open(&m->output, &opening);
+    m->watcher = opening.watcher;
+    return status;
 }
 
 static zt_status make_into_output(zt_filming *m) {

@@ -1,23 +1,9 @@
 #include "sequence/opening.h"
 
+#include "base/pool.h"
 #include "encode/output.h"
 
-static void open_output(void *user) {
-    zt_opening *o = user;
-    o->status = zt_output_open(&o->output, o->target, o->format, o->options, o->listener);
-    atomic_store(&o->refused, o->status != ZT_OK);
-}
-
 bool zt_opening_takes(const zt_opening *o) { return zt_output_module(o->target) != NULL; }
-
-void zt_opening_begin(zt_opening *o) {
-    /* Without a thread, it is opened at once. */
-    if (zt_opening_takes(o)) (void)zt_errand_open(&o->errand, open_output, o);
-    if (o->errand)
-        zt_errand_send(o->errand);
-    else
-        open_output(o);
-}
 
 static bool stopped(void *user) {
     zt_opening *o = user;
@@ -29,8 +15,17 @@ zt_watcher zt_opening_watcher(zt_opening *o) {
     return (zt_watcher){.stopped = stopped, .user = o};
 }
 
-zt_status zt_opening_end(zt_output **output, zt_opening *o) {
-    zt_errand_close(&o->errand);
-    *output = o->output;
-    return o->status;
+static void work(void *user) {
+    zt_opening *o = user;
+    o->worked = o->work(o->user);
+}
+
+zt_status zt_opening_open(zt_output **output, zt_opening *o) {
+    zt_errand *errand = NULL;
+    if (o->work) (void)zt_errand_open(&errand, work, o);
+    if (errand) zt_errand_send(errand);
+    zt_status opened = zt_output_open(output, o->target, o->format, o->options, o->listener);
+    atomic_store(&o->refused, opened != ZT_OK);
+    zt_errand_close(&errand);
+    return opened != ZT_OK ? opened : o->worked;
 }
