@@ -87,7 +87,7 @@ static void make_room(test_scene *s, bool sized) {
 }
 
 /* A square of a picture from somewhere, near or wide, of any number of rays. */
-static void make_rays(zt_rays *rays) {
+static void make_rays(zt_rays *rays, bool both_sides) {
     vec3 from = somewhere(2), ahead = test_direction(&seed),
          right = vec3_scale(test_direction(&seed), between(.001, .08)),
          down = vec3_scale(vec3_normalize(vec3_cross(ahead, right)), vec3_length(right));
@@ -95,7 +95,9 @@ static void make_rays(zt_rays *rays) {
     for (int i = 0; i < rays->count; i++) {
         vec3 d = vec3_add(
             ahead, vec3_add(vec3_scale(right, i % 16 - 7.5), vec3_scale(down, i / 16 - 7.5)));
-        rays->ox[i] = from.x, rays->oy[i] = from.y, rays->oz[i] = from.z;
+        if (both_sides && i % 2) d = vec3_scale(d, -1);
+        vec3 o = both_sides ? vec3_scale(d, -3) : from;
+        rays->ox[i] = o.x, rays->oy[i] = o.y, rays->oz[i] = o.z;
         rays->dx[i] = d.x, rays->dy[i] = d.y, rays->dz[i] = d.z;
         rays->key[i] = (uint32_t)i;
         rays->sample[i] = 3;
@@ -151,7 +153,7 @@ static void compare_ways(const answer *all, zt_rays *rays, stage *st, zt_ray_cou
     rays->footprint = NULL;
 }
 
-static void compare(zt_rays *rays, const zt_exposure *exposure, bool sized,
+static void compare(zt_rays *rays, const zt_exposure *exposure, bool sized, bool both_sides,
                     zt_ray_counts *sum) {
     static answer all, some;
     stage everything, own;
@@ -161,7 +163,7 @@ static void compare(zt_rays *rays, const zt_exposure *exposure, bool sized,
     open_stage(&own, exposure);
     assert_true(own.ready.plain && !everything.ready.plain);
     for (int batch = 0; batch < 8; batch++) {
-        make_rays(rays);
+        make_rays(rays, both_sides);
         ask(&all, rays, &everything);
         ask(&some, rays, &own);
         assert_same_light(&some.light, &all.light, rays->count);
@@ -194,13 +196,33 @@ static void test_rooms(void **state) {
         make_room(&s, sized);
         zt_exposure exposure = zt_exposure_of(&s.scene);
         setenv("ZOETROPE_ISA", room % 3 ? "" : "scalar", 1);
-        EACH_PRECISION compare(&rays, &exposure, sized, &sum);
+        EACH_PRECISION compare(&rays, &exposure, sized, false, &sum);
     }
     unsetenv("ZOETROPE_ISA");
     print_message("of %d batches %d met nothing, %d one flat thing alone\n", (int)sum.batches,
                   (int)sum.bare_batches, (int)sum.flat_batches);
     assert_true(sum.bare_batches > sum.batches / 40);
     assert_true(sum.flat_batches > sum.batches / 40);
+}
+
+/* One wall that the rays of a batch come to from both of its sides, with lamps on each. */
+static void test_both_sides(void **state) {
+    (void)state;
+    enum { WALLS = 20 };
+    static test_scene s;
+    static zt_rays rays;
+    zt_ray_counts sum = {0};
+    for (int wall = 0; wall < WALLS; wall++) {
+        scene_begin(&s);
+        scene_material(&s, (vec3){.9, .5, .7}, wall % 2 ? .5 : 0);
+        scene_plane(&s, test_direction(&seed), 0, 0);
+        add_lamps(&s, false);
+        scene_ambient(&s, white, .2);
+        s.scene.reflection_depth = 2;
+        zt_exposure exposure = zt_exposure_of(&s.scene);
+        EACH_PRECISION compare(&rays, &exposure, false, true, &sum);
+    }
+    assert_true(sum.bare_batches < sum.batches);
 }
 
 /* Of mostly empty pictures tiles are left out before there are rays: small things, planes that
@@ -261,6 +283,7 @@ static void test_empty_tiles(void **state) {
 int main(int count, char **arguments) {
     if (count > 1) seed = strtoull(arguments[1], NULL, 10);
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_rooms),
+                                       cmocka_unit_test(test_both_sides),
                                        cmocka_unit_test(test_empty_tiles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
