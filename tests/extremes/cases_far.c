@@ -66,6 +66,20 @@ static void make_tiny(stage *s, draw *d, double radius) {
         stage_aim(s, (vec3){0, 0, 0}, vec3_add(at, stage_within(d, i % 2 ? 1e-6 : 1e-5)));
 }
 
+/* Coins, brims, plates and panes: as thin as that against their width, seen from a thousand. */
+static void make_flat(stage *s, draw *d, double thin) {
+    vec3 at = vec3_scale(stage_direction(d), 1e3), axis = vec3_scale(stage_direction(d), thin);
+    const zt_shape shapes[] = {ZT_SHAPE_CYLINDER, ZT_SHAPE_CONE, ZT_SHAPE_BOX};
+    zt_object *o = scene_object(&s->s, shapes[draw_below(d, 3)], 0);
+    if (o->shape == ZT_SHAPE_BOX)
+        o->box = (zt_block){at, {1, thin, 1}, draw_rotation(d)};
+    else
+        o->tube = (zt_tube){at, vec3_add(at, axis), draw_between(d, 0.5, 1), draw_below(d, 2)};
+    scene_point_light(&s->s, vec3_add(at, vec3_scale(stage_direction(d), 5)), 9);
+    stage_shoot(s, d, STAGE_FROM_EYE, 0, s->ray_limit / 2);
+    stage_shoot(s, d, STAGE_FROM_ASIDE, 1e3, s->ray_limit / 2);
+}
+
 const extreme_case cases_far[] = {
     {"moved 1e7", make_moved, 1e7, 12, 64, 1, 0},
     {"moved 1e9", make_moved, 1e9, 12, 64, 1, 0},
@@ -74,5 +88,7 @@ const extreme_case cases_far[] = {
     {"ground 1e9", make_ground, 1e9, 4, 256, 1, CASE_DOUBLE},
     {"tiny 1e-6", make_tiny, 0, 8, 64, 1, 0},
     {"tiny and ground", make_tiny, 1e9, 8, 64, 1, CASE_DOUBLE},
+    {"flat 1e-4, far", make_flat, 1e-4, 24, 64, 1, 0},
+    {"flat 1e-6, far", make_flat, 1e-6, 24, 64, 1, 0},
     {0},
 };
