@@ -258,11 +258,12 @@ static void stretched_mesh(void **state) {
 }
 
 /* Grains in the distance, which a pixel does not show, may still be met on their far sides
- * where groups stretch them; else they need not be told apart, and a sphere never. */
+ * where groups stretch them, and cones anywhere; else they need not be told apart, and a
+ * sphere never. */
 static void thin(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++)
-        for (int kind = 0; kind < 3; kind++)
+        for (int kind = 0; kind < 4; kind++)
             for (int stretches = 0; stretches < 2; stretches++) {
                 double size = i ? 1e-4 : .05, tube = i ? 2e-5 : .01;
                 begin();
@@ -274,14 +275,17 @@ static void thin(void **state) {
                 else if (kind == 1)
                     scene_object(&s, ZT_SHAPE_TORUS, 0)->torus =
                         (zt_torus){{0, 0, 0}, {0, 1, 0}, .1, tube};
+                else if (kind == 2)
+                    scene_object(&s, ZT_SHAPE_CONE, 0)->tube =
+                        (zt_tube){{0, 0, 0}, {0, size, 0}, 10 * size, 0};
                 else
                     scene_sphere(&s, (vec3){0, 0, 0}, size, 0);
                 s.objects[1].parent = 0;
                 zt_accuracy a = judged();
-                bool asks = i && kind < 2 && stretches;
+                bool asks = i && (kind == 2 || (kind < 2 && stretches));
                 assert_int_equal(a.reason, asks ? ZT_ACCURACY_THIN : ZT_ACCURACY_FINE);
                 if (!asks) continue;
-                assert_float_equal(a.distance, kind ? 2 * tube : size, 1e-9);
+                assert_float_equal(a.distance, kind == 1 ? 2 * tube : size, 1e-9);
                 assert_int_equal(ready_for(ZT_PRECISION_AUTO).beyond.reason, ZT_ACCURACY_FINE);
             }
 }

@@ -10,8 +10,8 @@
 #define SEEN      (1.0 / 8)
 #define SEEN_LAMP (1.0 / 64)
 
-/* The sides of what is stretched are not told apart where it is thinner than so many times what
- * is wrong. */
+/* The sides of what is stretched, and of cones, are not told apart where it is thinner than so
+ * many times what is wrong. */
 #define THIN 64
 
 /* What a precision holds. */

@@ -61,14 +61,15 @@ typedef struct zt_extent {
     vec3 middle, ways[3];
     int faces;
     bool perhaps;
-    double size;    /* the largest number in its arithmetic */
-    double least;   /* its smallest size that counts; infinite for planes */
-    double thin;    /* of what groups stretch: half of its smallest measure; else infinite */
-    double askew;   /* by how much roundings grow on the way through its own space, whose axes
-                       stand   askew in groups that stretch and turn: the length of an axis times
-                       that of   its row of the inverse, 1 where they are at right angles */
-    double grain;   /* by how much doubles round its place, wherever the camera is */
-    double near;    /* how far away the surface is from the camera, at least about */
+    double size;  /* the largest number in its arithmetic */
+    double least; /* its smallest size that counts; infinite for planes */
+    double thin;  /* of what groups stretch half of its smallest measure, of cones half of their
+                     height; else infinite */
+    double askew; /* by how much roundings grow on the way through its own space, whose axes
+                     stand askew in groups that stretch and turn: the length of an axis times
+                     that of its row of the inverse, 1 where they are at right angles */
+    double grain; /* by how much doubles round its place, wherever the camera is */
+    double near;  /* how far away the surface is from the camera, at least about */
     double stretch; /* how many times more roundings than a sphere's it has */
     double lamp;    /* how far away the nearest lamp is; infinite where there is none */
     int32_t lamp_light;

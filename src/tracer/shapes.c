@@ -243,9 +243,12 @@ static bool prepare_tube(zt_making *m) {
     xform place = place_along(m->world, tube->from, vec3_sub(tube->to, tube->from), wide);
     m->primitive->solid.a = cone ? (real)(tube->radius / wide) : 1;
     m->primitive->solid.b = cone ? (real)(tube->end_radius / wide) : 1;
-    bool pipe = m->primitive->solid.a == m->primitive->solid.b;
-    return make_solid(m, pipe ? ZT_PRIMITIVE_CYLINDER : ZT_PRIMITIVE_CONE, &place, 1, 0, 0, 1,
-                      0);
+    if (m->primitive->solid.a == m->primitive->solid.b)
+        return make_solid(m, ZT_PRIMITIVE_CYLINDER, &place, 1, 0, 0, 1, 0);
+    if (!make_solid(m, ZT_PRIMITIVE_CONE, &place, 1, 0, 0, 1, 0)) return false;
+    /* At its rim its two faces are the nearer to each other the flatter it is. */
+    m->extent->thin = fmin(m->extent->thin, 0.5 * vec3_length(axis_of(&place, 2)));
+    return true;
 }
 
 static bool prepare_capsule(zt_making *m) {

@@ -88,6 +88,7 @@ const extreme_case cases_far[] = {
     {"ground 1e9", make_ground, 1e9, 4, 256, 1, CASE_DOUBLE},
     {"tiny 1e-6", make_tiny, 0, 8, 64, 1, 0},
     {"tiny and ground", make_tiny, 1e9, 8, 64, 1, CASE_DOUBLE},
+    {"flat 1e-2, far", make_flat, 1e-2, 24, 64, 1, 0},
     {"flat 1e-4, far", make_flat, 1e-4, 24, 64, 1, 0},
     {"flat 1e-6, far", make_flat, 1e-6, 24, 64, 1, 0},
     {0},

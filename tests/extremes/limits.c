@@ -11,7 +11,7 @@
  * measured. */
 /* Of a flat cone the two faces of its rim are nearer to each other than roundings of the way
  * there: at 1e-2 of its width and a thousand times that away one ray in 40,000 misses it in
- * single precision, at 1e-4 one in 200 (traced in double by auto). */
+ * single precision, at 1e-4 one in 200 (both traced in double by auto). */
 #define FLAT "thinner than what single precision tells apart at its distance"
 
 #define ASKEW "stretched and turned by more than single precision holds"
@@ -28,6 +28,7 @@ const limit limits[] = {
     {"flattened 1e-3", PROBE_SINGLE, ASKEW},
     {"flattened 1e-6", PROBE_SINGLE, ASKEW},
     {"flattened 1e-12", PROBE_SINGLE, ASKEW},
+    {"flat 1e-2, far", PROBE_SINGLE, FLAT},
     {"flat 1e-4, far", PROBE_SINGLE, FLAT},
     {"flat 1e-6, far", PROBE_SINGLE, FLAT},
     {"nasty", PROBE_SINGLE, ASKEW},
