@@ -37,7 +37,6 @@ ZT_CLONES static void add_cover(zt_radiance *restrict sum, const zt_radiance *re
     }
 }
 
-/* Makes the sums the means. */
 ZT_CLONES static void average(zt_radiance *restrict sum, const int32_t *restrict taken,
                               int count) {
     for (int i = 0; i < count; i++) {
@@ -55,7 +54,7 @@ static void find_alpha(float *restrict alpha, const int32_t *restrict taken, int
         alpha[i] = !transparent ? 1 : taken[i] ? alpha[i] / (float)taken[i] : 0;
 }
 
-ZT_CLONES static int settle(zt_radiance *restrict light, int count, bool transparent) {
+ZT_CLONES int zt_pixels_settle(zt_radiance *restrict light, int count, bool transparent) {
     int left_out = 0;
     for (int i = 0; i < count; i++) {
         bool finite = zt_finite3(light->r[i], light->g[i], light->b[i]);
@@ -77,10 +76,6 @@ int zt_pixels_add(zt_radiance *sum, int32_t *taken, const zt_radiance *light, in
 void zt_pixels_average(zt_radiance *sum, const int32_t *taken, int count, bool transparent) {
     average(sum, taken, count);
     find_alpha(sum->a, taken, count, transparent);
-}
-
-int zt_pixels_settle(zt_radiance *light, int count, bool transparent) {
-    return settle(light, count, transparent);
 }
 
 /* Four pixels, a line of a cache, past the caches: a picture that does not fit there is written
@@ -121,8 +116,8 @@ void zt_pixels_fill(float *restrict pixels, int width, const zt_radiance *restri
 void zt_pixels_fill_paths(uint32_t *restrict paths, int width, const uint32_t *restrict path,
                           const int32_t *restrict column, const int32_t *restrict row,
                           int count, bool whole) {
-    int run = whole ? 4 : 1;
+    int run = whole ? RUN : 1;
     for (int i = 0; i < count; i += run)
         memcpy(paths + (size_t)row[i] * (size_t)width + (size_t)column[i], path + i,
-               whole ? 4 * sizeof *path : sizeof *path);
+               whole ? RUN * sizeof *path : sizeof *path);
 }

@@ -13,7 +13,7 @@
 int zt_pixels_add(zt_radiance *sum, int32_t *taken, const zt_radiance *light, int first,
                   int count, bool transparent);
 
-/* Makes the sums the means. */
+/* Makes the sums the means; A is 1 of pictures that are not transparent. */
 void zt_pixels_average(zt_radiance *sum, const int32_t *taken, int count, bool transparent);
 
 /* The same for a single sample of each pixel: what is not finite becomes 0. */

@@ -28,10 +28,10 @@ typedef struct zt_settings {
 
 /* A line of JSON, of letters of ASCII alone, in the arena:
  *
- *   {"zoetrope": 1, "arithmetic": "zoetrope 2 x86-64", "size": [1280, 720], "min": 4, "max": 64,
- *    "error": 0.002, "filter": "gaussian", "filter_width": 2.00, "seed": 0, "precision":
- * "auto", "view": "srgb", "aovs": ["Z"], "format": "bits=half", "set": ["lamp.intensity",
- * "40"]}
+ *   {"zoetrope": 1, "arithmetic": "zoetrope 2 x86-64", "size": [1280, 720], "min": 4,
+ *    "max": 64, "error": 0.002, "filter": "gaussian", "filter_width": 2.00, "seed": 0,
+ *    "precision": "auto", "view": "srgb", "aovs": ["Z"], "format": "bits=half",
+ *    "set": ["lamp.intensity", "40"]}
  *
  * "quality": "edges", "mean_max", "seed_fixed" and "color": [config, display, view], with ""
  * for what is not said, are there where they say something. */

@@ -131,8 +131,8 @@ typedef struct zt_ready {
      * than double, where that was chosen. */
     zt_accuracy accuracy, beyond;
     zt_needs needs;
-    bool plain;  /* nothing moves while the shutter is open, and not everything is done */
     bool moves;  /* something moves while the shutter is open, the camera left aside */
+    bool plain;  /* that is not so, and what is not needed is left out */
     bool random; /* there are lamps with a size: light is a mean over random numbers */
 } zt_ready;
 

@@ -34,14 +34,14 @@ static void go_to_ends(zt_points *restrict w, const zt_batch *restrict rays,
 
 /* The looks of point k, if it is on that surface; the normal, and the corrected position, where
  * its kind is one of which a zt_surface says all. A row of zeros leaves the position as it is.
- * Normals of what is not bent are unit as they are: `flat` says that before the loop, and
+ * Normals of what is not bent are unit as they are: `unbent` says that before the loop, and
  * changes nothing. */
 static inline void find_surface(zt_points *restrict w, zt_origins *restrict from, int k,
-                                const zt_surface *s, bool flat, bool on) {
+                                const zt_surface *s, bool unbent, bool on) {
     real qx = from->x[k] - s->center.x, qy = from->y[k] - s->center.y,
          qz = from->z[k] - s->center.z;
     real nx = s->normal.x, ny = s->normal.y, nz = s->normal.z;
-    if (!flat) {
+    if (!unbent) {
         nx += s->bend * qx;
         ny += s->bend * qy;
         nz += s->bend * qz;

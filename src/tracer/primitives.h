@@ -82,9 +82,9 @@ typedef struct zt_primitive {
 
 /* Each function below gives the nearest distance above `near` >= 0 at which the ray o + t d,
  * |d| = 1, meets the primitive, or infinity (or NaN, which compares as no hit); a closed one
- * that begins nearer is met where it ends. `leaving` is 0 for a ray
- * that begins elsewhere, 1 for one that begins on this surface and goes on outside of it, -1
- * for one that goes on inside. */
+ * that begins nearer is met where it ends. `leaving` is 0 for a ray that begins elsewhere, 1
+ * for one that begins on this surface and goes on outside of it, -1 for one that goes on
+ * inside. */
 
 /* The normal has any length. */
 static inline real zt_plane_meet(real3 n, real distance, real ox, real oy, real oz, real dx,

@@ -50,18 +50,19 @@ typedef struct zt_face {
     real nx, ny, nz, off;
 } zt_face;
 
-/* Rows of a matrix; and how long a gradient of the solid's own space is beyond it. */
+/* Rows of the matrix that takes directions to the solid's own space. */
 typedef struct zt_rows {
     real3 x, y, z;
 } zt_rows;
 
+/* A gradient of that space as it is beyond it. */
 static inline real3 zt_gradient(const zt_rows *m, real nx, real ny, real nz) {
     return (real3){m->x.x * nx + m->y.x * ny + m->z.x * nz,
                    m->x.y * nx + m->y.y * ny + m->z.y * nz,
                    m->x.z * nx + m->y.z * ny + m->z.z * nz};
 }
 
-static inline real rows_length(real3 v) {
+static inline real length_of(real3 v) {
     return real_sqrt(real_dot(v.x, v.y, v.z, v.x, v.y, v.z));
 }
 
@@ -154,8 +155,8 @@ static inline zt_face zt_box_surface(real x, real y, real z, real p0, real p1,
                                      const zt_rows *m) {
     (void)p0, (void)p1;
     real ax = real_abs(x), ay = real_abs(y), az = real_abs(z);
-    real lx = (ax - 1) / rows_length(m->x), ly = (ay - 1) / rows_length(m->y),
-         lz = (az - 1) / rows_length(m->z);
+    real lx = (ax - 1) / length_of(m->x), ly = (ay - 1) / length_of(m->y),
+         lz = (az - 1) / length_of(m->z);
     bool is_x = (lx >= ly) & (lx >= lz), is_y = !is_x & (ly >= lz), is_z = !is_x & !is_y;
     real nx = x < 0 ? -1 : 1, ny = y < 0 ? -1 : 1, nz = z < 0 ? -1 : 1;
     real off = is_x ? ax - 1 : is_y ? ay - 1 : az - 1;
@@ -199,8 +200,8 @@ static inline real zt_cylinder_meet(real fx, real fy, real fz, real ex, real ey,
 /* The face of the side of something round about z, or that of the cap it is nearer to. */
 static inline zt_face capped_face(zt_face side, real z, const zt_rows *m) {
     zt_face cap = {0, 0, z > (real)0.5 ? 1 : -1, z > (real)0.5 ? z - 1 : -z};
-    real steep = rows_length(zt_gradient(m, side.nx, side.ny, side.nz));
-    bool on_cap = cap.off * steep > side.off * rows_length(m->z);
+    real steep = length_of(zt_gradient(m, side.nx, side.ny, side.nz));
+    bool on_cap = cap.off * steep > side.off * length_of(m->z);
     return (zt_face){on_cap ? cap.nx : side.nx, on_cap ? cap.ny : side.ny,
                      on_cap ? cap.nz : side.nz, on_cap ? cap.off : side.off};
 }
