@@ -9,12 +9,12 @@
  * how large. In single precision 1e-6 holds to axes that differ by 1e4 (stretched by 1e2 and
  * 1e-2), or one that is flattened to 1e-2; in double precision 1e-12 holds for all solids
  * measured. */
+#define ASKEW "stretched and turned by more than single precision holds"
+
 /* Of a flat cone the two faces of its rim are nearer to each other than roundings of the way
  * there: at 1e-2 of its width and a thousand times that away one ray in 40,000 misses it in
  * single precision, at 1e-4 one in 200 (both traced in double by auto). */
 #define FLAT "thinner than what single precision tells apart at its distance"
-
-#define ASKEW "stretched and turned by more than single precision holds"
 
 const limit limits[] = {
     /* 17 of 512 rays, 5e-10 of the mesh's size further on; a solid's own surface is left out

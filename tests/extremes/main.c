@@ -5,8 +5,7 @@
  * --first: the number of the first scene of each case; --scenes: how many; without both, those
  * of the short run. --rays: how many at edges and corners of closed meshes. --precision: one
  * instead of all three. --verbose prints each mistake, --digest a checksum of all answers
- * instead, for comparisons between kernels. Exits with 1 where what
- * must hold does not. */
+ * instead, for comparisons between kernels. Exits with 1 where what must hold does not. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -180,24 +180,26 @@ int ref_faces(ref_face faces[REF_FACES_MAX], const ref_primitive *p, int32_t par
     return count;
 }
 
-ref_face ref_nearest_face(const ref_primitive *p, int32_t part, real3 point) {
-    ref_face faces[REF_FACES_MAX];
-    int best = 0, count = ref_faces(faces, p, part, point);
+static int nearest(const ref_face *faces, int count) {
+    int best = 0;
     for (int i = 1; i < count; i++)
         if (faces[i].distance < faces[best].distance) best = i;
-    return faces[best];
+    return best;
+}
+
+ref_face ref_nearest_face(const ref_primitive *p, int32_t part, real3 point) {
+    ref_face faces[REF_FACES_MAX];
+    int count = ref_faces(faces, p, part, point);
+    return faces[nearest(faces, count)];
 }
 
 real ref_curve(const ref_primitive *p, real3 point, real3 direction) {
     if (p->shape == ZT_SHAPE_PLANE || p->triangle_count > 0) return 0;
     own_face own[REF_FACES_MAX];
     ref_face faces[REF_FACES_MAX];
-    int best = 0, count = solid_faces(own, p, point);
-    for (int i = 0; i < count; i++) {
-        faces[i] = to_world(p, &own[i]);
-        if (faces[i].distance < faces[best].distance) best = i;
-    }
-    const own_face *f = &own[best];
+    int count = solid_faces(own, p, point);
+    for (int i = 0; i < count; i++) faces[i] = to_world(p, &own[i]);
+    const own_face *f = &own[nearest(faces, count)];
     real3 step = to_own(p, direction);
     real sum = 0, length = real3_length(f->gradient);
     for (int i = 0; i < 2; i++) {
