@@ -2,11 +2,13 @@
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -222,6 +224,54 @@ static void parts_share(void **state) {
                 access("p.##.png.1-of-2.lock", F_OK) != 0);
 }
 
+/* ---- what is told ---------------------------------------------------------------------------
+ */
+
+/* Who listens takes a while, and notices whether somebody else speaks meanwhile. */
+typedef struct slow_ear {
+    atomic_int speaking, count;
+    atomic_bool together;
+} slow_ear;
+
+static void hear_slowly(void *user, const zt_message *message) {
+    slow_ear *ear = user;
+    (void)message;
+    (void)message;
+    if (atomic_fetch_add(&ear->speaking, 1) > 0) atomic_store(&ear->together, true);
+    nanosleep(&(struct timespec){0, 300 * 1000 * 1000}, NULL);
+    atomic_fetch_sub(&ear->speaking, 1);
+    atomic_fetch_add(&ear->count, 1);
+}
+
+/* The first frame asks for more than single precision while a movie without alpha is opened:
+ * both say so, one after the other. */
+static void warnings_come_in_turn(void **state) {
+    (void)state;
+    print_to("ground.yaml",
+             "zoetrope: 1\n"
+             "film: { size: [16, 10], rate: 12, duration: 1 s, background: transparent }\n"
+             "camera: { position: [0, 1, 6] }\n"
+             "objects: [sphere: { center: [0, -1e7, 0], radius: 1e7 }]\n"
+             "lights: [ambient: {}]\n");
+    zt_animation *animation;
+    zt_renderer *renderer;
+    assert_int_equal(zt_animation_read(&animation, "ground.yaml", NULL, 0, (zt_listener){0}),
+                     ZT_OK);
+    slow_ear ear = {0};
+    const zt_render_settings settings = {.threads = 1, .precision = ZT_PRECISION_SINGLE};
+    assert_int_equal(
+        zt_renderer_open(&renderer, animation, &settings, (zt_listener){hear_slowly, &ear}),
+        ZT_OK);
+    const zt_frames frames = {&(int64_t){0}, 1};
+    const zt_film_order order = {.target = "turns.mp4", .frames = &frames, .forgets = true};
+    zt_film_result result;
+    assert_int_equal(zt_film_render(&result, renderer, &order, NULL), ZT_OK);
+    assert_int_equal(ear.count, 3); /* and in the end what the movie holds */
+    assert_false(ear.together);
+    zt_renderer_close(&renderer);
+    zt_animation_free(&animation);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(frames_are_told_apart),
                                        cmocka_unit_test(names_change_nothing),
@@ -232,6 +282,7 @@ int main(void) {
                                        cmocka_unit_test(strangers_stay),
                                        cmocka_unit_test(one_at_a_time),
                                        cmocka_unit_test(parts_of_movies_share_nothing),
-                                       cmocka_unit_test(parts_share)};
+                                       cmocka_unit_test(parts_share),
+                                       cmocka_unit_test(warnings_come_in_turn)};
     return cmocka_run_group_tests(tests, files_begin, files_end);
 }

@@ -35,8 +35,9 @@ typedef struct zt_message {
 } zt_message;
 
 /* Who listens. `tell` may be NULL: then nothing is heard, and only the status tells. It is
- * called from the thread that called the library, but for writing behind the rendering, which
- * may tell from a thread of its own; never from two threads at once within one call. */
+ * called from the thread that called the library, but for what is done behind it meanwhile,
+ * such as writing, which may tell from a thread of its own; never from two threads at once
+ * within one call. */
 typedef struct zt_listener {
     void (*tell)(void *user, const zt_message *message);
     void *user;

@@ -39,14 +39,26 @@ static zt_status open_parts(zt_renderer *r, int thread_count) {
     return zt_render_work_push(&r->work, &r->run, thread_count);
 }
 
+static bool has_meshes(const zt_scene *rest) {
+    bool has = false;
+    for (int32_t i = 0; i < rest->object_count; i++)
+        has |= rest->objects[i].shape == ZT_SHAPE_MESH;
+    return has;
+}
+
 /* What the film will need, and this program was built without, is told before all else. */
 static zt_status check_built(const zt_animation *animation, zt_listener listener) {
-    const zt_scene *rest = &animation->rest;
-    bool meshes = false;
-    for (int32_t i = 0; i < rest->object_count; i++)
-        meshes |= rest->objects[i].shape == ZT_SHAPE_MESH;
-    bool good = !meshes || zt_module_is_built("embree", "a mesh", listener);
+    bool good =
+        !has_meshes(&animation->rest) || zt_module_is_built("embree", "a mesh", listener);
     return good ? ZT_OK : ZT_EUNSUPPORTED;
+}
+
+/* What renders, what opens an output and what writes may each have something to say. */
+static void tell_in_turn(void *user, const zt_message *message) {
+    zt_renderer *r = user;
+    mtx_lock(&r->telling);
+    r->caller.tell(r->caller.user, message);
+    mtx_unlock(&r->telling);
 }
 
 zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
@@ -56,9 +68,14 @@ zt_status zt_renderer_open(zt_renderer **out, const zt_animation *animation,
     ZT_TRY(check_built(animation, listener));
     zt_renderer *r = calloc(1, sizeof *r);
     if (!r) return ZT_EMEMORY;
+    if (mtx_init(&r->telling, mtx_plain) != thrd_success) {
+        free(r);
+        return ZT_EMEMORY;
+    }
     const zt_film *film = &animation->film;
     r->animation = animation;
-    r->listener = listener;
+    r->caller = listener;
+    if (listener.tell) r->listener = (zt_listener){tell_in_turn, r};
     r->precision = settings->precision;
     r->aovs = film->aovs | settings->aovs;
     r->sampling = film->sampling;
@@ -94,6 +111,7 @@ void zt_renderer_close(zt_renderer **slot) {
     zt_arena_free(&r->run);
     zt_arena_free(&r->frame);
     zt_pacing_free(&r->pacing);
+    mtx_destroy(&r->telling);
     free(r);
     *slot = NULL;
 }
@@ -114,16 +132,14 @@ static zt_hash view_of(const zt_renderer *r, const zt_exposure *exposure) {
 
 zt_status zt_renderer_start(zt_renderer *r) {
     const zt_scene *rest = &r->animation->rest;
-    bool meshes = false;
     int32_t bounded = 0;
     for (int32_t i = 0; i < rest->object_count; i++) {
         const zt_shape shape = rest->objects[i].shape;
-        meshes |= shape == ZT_SHAPE_MESH;
         bounded += shape != ZT_SHAPE_PLANE && shape != ZT_SHAPE_GROUP;
     }
     bool crowd =
         bounded > ZT_SINGLE_MAX && zt_module_is_built("embree", NULL, (zt_listener){0});
-    return meshes || crowd ? zt_meshes_start(r->meshes) : ZT_OK;
+    return crowd || has_meshes(rest) ? zt_meshes_start(r->meshes) : ZT_OK;
 }
 
 zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {

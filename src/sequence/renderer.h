@@ -2,6 +2,8 @@
 #ifndef ZT_SEQUENCE_RENDERER_H
 #define ZT_SEQUENCE_RENDERER_H
 
+#include <threads.h>
+
 #include <zoetrope/renderer.h>
 #include <zoetrope/stats.h>
 
@@ -32,7 +34,8 @@ struct zt_renderer {
     unsigned aovs;     /* bits of zt_aov: the description's, and those that were asked for */
     const bool *stays; /* as in zt_exposure */
     zt_hash held;      /* of what all meshes hold; zero until it is asked for */
-    zt_listener listener;
+    zt_listener caller, listener; /* who listens, and what tells them one thing at a time; */
+    mtx_t telling;                /* held meanwhile */
     zt_pool *pool;
     zt_meshes *meshes;
     zt_arena run, frame; /* memory for the whole run, and for one frame after the other */
