@@ -11,7 +11,8 @@
 struct zt_meshes {
     int32_t mesh_count;
     zt_bvh_builder *builder;
-    zt_pool *pool;        /* what shares in building; NULL: no mesh is worth it */
+    bool large;           /* there is a mesh that is worth several threads */
+    zt_pool *pool;        /* those threads, or NULL */
     mtx_t building;       /* held while a mesh is built */
     zt_status status;     /* of that */
     zt_built_mesh *built; /* one for each mesh */
@@ -36,7 +37,10 @@ zt_status zt_meshes_open(zt_meshes **out, const zt_mesh *meshes, int32_t mesh_co
         return status;
     }
     m->mesh_count = mesh_count;
-    for (int32_t i = 0; i < mesh_count; i++) m->built[i].mesh = &meshes[i];
+    for (int32_t i = 0; i < mesh_count; i++) {
+        m->built[i].mesh = &meshes[i];
+        m->large |= meshes[i].triangle_count >= ZT_CLUSTERS_MANY;
+    }
     *out = m;
     return ZT_OK;
 }
@@ -100,18 +104,11 @@ static zt_bvh_box box_around(const zt_mesh *mesh) {
     return box;
 }
 
-static bool has_large(const zt_meshes *m) {
-    bool has = false;
-    for (int32_t i = 0; i < m->mesh_count; i++)
-        has |= m->built[i].mesh->triangle_count >= ZT_CLUSTERS_MANY;
-    return has;
-}
-
 zt_status zt_meshes_start(zt_meshes *m) {
     const int threads = zt_bvh_threads(m->builder);
     ZT_TRY(zt_bvh_start(m->builder));
     /* Without the threads it takes longer. */
-    if (!m->pool && threads > 1 && has_large(m)) (void)zt_pool_open(&m->pool, threads);
+    if (!m->pool && threads > 1 && m->large) (void)zt_pool_open(&m->pool, threads);
     return ZT_OK;
 }
 
