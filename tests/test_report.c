@@ -87,12 +87,16 @@ static void tables(void **state) {
     }
     assert_int_equal(rows, 1 + RUNGS);
     assert_int_equal(count_of(json, "\"kind\": "), RUNGS);
-    const char *words[] = {
-        "\"shadow_rays_avoided\":", "\"mirror_rays_avoided\":",
-        "\"short_batches\":",       "\"libraries\": { \"OpenImageIO\": \"loaded\"",
-        "\"frames\": [2]",          "\"slope_of_rmse_by_time\": -",
-        "\"file\": \"film.yaml\"",  "\"samples\": 128",
-        "\"setting\": \""};
+    const char *words[] = {"\"shadow_rays_avoided\":",
+                           "\"mirror_rays_avoided\":",
+                           "\"short_batches\":",
+                           "\"libraries\": { \"OpenImageIO\": \"loaded\"",
+                           "\"frames\": [2]",
+                           "\"slope_of_rmse_by_samples\": -",
+                           "\"slope_of_rmse_by_time\": ",
+                           "\"file\": \"film.yaml\"",
+                           "\"samples\": 128",
+                           "\"setting\": \""};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) assert_contains(json, words[i]);
     assert_null(strstr(json, "nan"));
     assert_null(strstr(json, "inf,"));
