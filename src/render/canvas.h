@@ -52,6 +52,8 @@ typedef struct zt_canvas {
     uint32_t *path;
     uint8_t *edge, *least;
     int32_t slot_count, waiting_count, round_count;
+    int32_t enough; /* a pixel with fewer samples is to have as much smaller a squared error */
+    bool is_random; /* what samples meet is, not only where in pixels they are taken */
 } zt_canvas;
 
 /* What a thread adds up for the slots that it works on: of the samples so far or the first half

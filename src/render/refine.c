@@ -26,13 +26,12 @@ static void decide_task(void *user, int task, int worker) {
     const zt_round_job *j = user;
     const zt_frame *f = j->frame;
     zt_canvas *canvas = &f->work->canvas;
-    const int enough = f->at_edges ? CHEAP : 1;
     int32_t end = min_int((task + 1) * DECISIONS, canvas->round_count);
     for (int32_t i = task * DECISIONS; i < end; i++) {
         const zt_slot *s = &canvas->slots[canvas->round[i]];
         int least =
             f->at_edges ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
-        float share = fminf((float)s->asked / (float)enough, 1);
+        float share = fminf((float)s->asked / (float)canvas->enough, 1);
         canvas->goes_on[i] =
             s->asked < f->job->sampling.max &&
             (s->asked < least || zt_canvas_error(canvas, s) > share * j->wanted);
@@ -136,6 +135,8 @@ zt_status zt_refine(zt_frame *f) {
     zt_canvas *canvas = &f->work->canvas;
     zt_round_job j = {.frame = f, .is_signed = zt_warp_is_signed(f->job->warp)};
     double taken = f->at_edges ? pixels_of(canvas) : 0;
+    canvas->enough = f->at_edges ? CHEAP : 1;
+    canvas->is_random = zt_render_is_random(f->job);
     while (canvas->waiting_count > 0) {
         j = zt_round_plan(f, begin_round(canvas));
         double more = (double)canvas->round_count * j.more;

@@ -282,12 +282,6 @@ static void fill_channels(zt_image *image, const zt_sampling *sampling) {
     for (size_t i = 0; error && i < count; i++) error[i] = -1;
 }
 
-/* Where light is a mean over more than places, samples in the middle of pixels say little. */
-static bool can_tell_edges(const zt_render_job *job) {
-    return !job->scene->random && !job->scene->moves && !zt_lens_has_aperture(job->lens) &&
-           !zt_lens_moves(job->lens);
-}
-
 /* As many samples in each pixel, or wherever they are wanted. */
 static zt_status render_once(zt_frame *f) {
     if (f->even) return render_tiles(f) ? ZT_OK : ZT_ESTOPPED;
@@ -308,7 +302,8 @@ static zt_status render_once(zt_frame *f) {
 static zt_status render_all(zt_frame *f) {
     const zt_render_job *job = f->job;
     f->even = zt_render_is_even(job);
-    f->at_edges = !f->even && job->sampling.edges && can_tell_edges(job);
+    /* Of random light, samples in the middle of pixels say little. */
+    f->at_edges = !f->even && job->sampling.edges && !zt_render_is_random(job);
     if (f->even) fill_channels(f->image, &job->sampling);
     ZT_TRY(zt_reuse_begin(f));
     const zt_kernel *kernel = job->scene->kernel;

@@ -51,6 +51,12 @@ static inline bool zt_render_is_even(const zt_render_job *job) {
     return s->max == 1 || (s->min >= s->max && !s->edges && !zt_warp_is_signed(job->warp));
 }
 
+/* Whether light is a mean over more than places in pixels. */
+static inline bool zt_render_is_random(const zt_render_job *job) {
+    return job->scene->random || job->scene->moves || zt_lens_has_aperture(job->lens) ||
+           zt_lens_moves(job->lens);
+}
+
 /* What keeps tiles of such frames from being copied from one to the next where the camera
  * stands still, as a sentence; NULL: nothing does. */
 const char *zt_reuse_hindrance(const zt_render_job *job);

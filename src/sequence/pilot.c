@@ -4,26 +4,23 @@
 
 #include "base/clock.h"
 #include "base/diag.h"
+#include "render/expect.h"
 
 /* What of the budget it may take, and of adaptive sampling, of a single frame's; samples a
  * pixel in it; how many of them even where no two samples differ, so that frames that were not
  * looked at have some. */
 #define PILOT_SHARE    0.1
 #define ADAPTIVE_SHARE 0.3
-enum { SAMPLES_MAX = 64, SAMPLES_ANYWAY = 64, SMALLER = 4 };
+enum { SAMPLES_MAX = 64, SAMPLES_ANYWAY = 64, SIZES = 3 };
 
-/* How errors fall with samples, and samples grow with errors, where that was not to be seen. */
-#define USUAL_SLOPE 0.6
-#define USUAL_POWER 1.65
-#define STEEPEST    2.0 /* errors of random samples fall no slower */
+#define USUAL_SLOPE 0.6 /* of errors with samples, where that was not to be seen */
 
 typedef struct pilot {
     zt_plan *plan;
     zt_renderer *renderer;
     zt_watcher watcher;     /* stops, and says nothing */
-    zt_image *images[2];    /* of the renderer's size */
-    zt_image *small;        /* of fewer pixels */
-    double many;            /* times more pixels than the small one the others have */
+    zt_image *sizes[SIZES]; /* each with twice the sides of the one before, to the frame's */
+    zt_image *other;        /* another one of that size */
     double left_s;          /* that it may still take */
     double fixed_s, unit_s; /* of a frame: before its first sample, and for each, a pixel */
 } pilot;
@@ -32,6 +29,8 @@ typedef struct pilot {
 typedef struct taken {
     double fixed_s, render_s;
 } taken;
+
+static double pixels_of(const zt_image *image) { return (double)image->width * image->height; }
 
 static zt_status take(taken *t, pilot *p, int64_t frame, zt_image *image,
                       zt_sampling sampling) {
@@ -59,9 +58,10 @@ static zt_status look(pilot *p, int64_t frame) {
     sampling.min = sampling.max = 2;
     sampling.error = 0;
     sampling.edges = false;
-    for (int i = 0; i < 2; i++) ZT_TRY(take(&t, p, frame, p->small, sampling));
+    for (int i = 0; i < 2; i++) ZT_TRY(take(&t, p, frame, p->sizes[0], sampling));
     p->fixed_s = t.fixed_s;
-    p->unit_s = fmax(t.render_s / 2, 1e-9) * p->many;
+    p->unit_s =
+        fmax(t.render_s / 2, 1e-9) * pixels_of(p->sizes[SIZES - 1]) / pixels_of(p->sizes[0]);
     return ZT_OK;
 }
 
@@ -97,11 +97,11 @@ static zt_status measure(double *error, taken *t, pilot *p, int64_t frame, int s
         zt_sampling sampling = p->plan->sampling;
         sampling.min = sampling.max = samples;
         sampling.seed += i * 0x9e3779b9u;
-        ZT_TRY(take(&each, p, frame, p->images[i], sampling));
+        ZT_TRY(take(&each, p, frame, i ? p->other : p->sizes[SIZES - 1], sampling));
         if (i > 0 && each.render_s > t->render_s) continue; /* something else took its time */
         *t = each;
     }
-    *error = error_of(p->images[0], p->images[1]);
+    *error = error_of(p->sizes[SIZES - 1], p->other);
     return ZT_OK;
 }
 
@@ -113,7 +113,7 @@ static zt_status gauge(pilot *p, int64_t frame, double share_s) {
         double next_s = p->fixed_s + samples * p->unit_s;
         if (next_s > share_s) return ZT_OK;
         sampling.min = sampling.max = samples;
-        ZT_TRY(take(&t, p, frame, p->images[0], sampling));
+        ZT_TRY(take(&t, p, frame, p->sizes[SIZES - 1], sampling));
         share_s -= t.fixed_s + t.render_s;
         p->fixed_s = t.fixed_s;
         p->unit_s = t.render_s / samples;
@@ -146,6 +146,7 @@ static void set_shares(zt_plan *plan, const double *errors, double slope) {
 static zt_status pilot_even(pilot *p) {
     zt_plan *plan = p->plan;
     int count = most_frames(plan), samples;
+    ZT_TRY(look(p, spread_frame(plan, 0, 1)));
     ZT_TRY(gauge(p, spread_frame(plan, 0, 1), count > 1 ? p->left_s / 5 : p->left_s));
     samples = count > 1 ? samples_for(p, count) : 0;
     while (samples < 8 && count > 1) samples = samples_for(p, --count);
@@ -171,103 +172,177 @@ static zt_status pilot_even(pilot *p) {
 
 /* ---- samples by an error --------------------------------------------------------------------
  *
- * How much more time smaller errors take does not follow from larger ones: ever more pixels
- * join in; nor from small pictures, of which edges are a larger part. So it is the whole
- * picture that goes down, as far as there is time; a small one says where it can begin.
+ * Pictures of ever more pixels, at last the whole one, each with errors as small as there is
+ * time for: how many samples any other error asks for follows from what its pixels have taken
+ * by then (render/expect.h).
  */
 
-static zt_status measure_adaptive(taken *t, pilot *p, int64_t frame, zt_image *image,
-                                  double error) {
-    zt_sampling sampling = p->plan->sampling;
-    sampling.error = error;
-    sampling.max = ZT_PLAN_SAMPLES_MAX;
-    return take(t, p, frame, image, sampling);
-}
+enum { LAST = ZT_EXPECT_COUNT - 1, LEAP = 3 * ZT_EXPECT_OCTAVE };
 
-#define SEEN 0.05 /* of the least, what its time may be off by */
+#define SEEN  0.05 /* of samples or their time, what is too few to tell */
+#define FEW   0.25 /* of the least samples, what weighs as much as what was expected of more */
+#define SMALL 0.15 /* of the pilot's time, for ever smaller errors of a small picture */
+#define TWICE 1.6  /* a picture's least time by its pixels, for two looks at a larger one */
 
-/* What a picture takes with the least samples, and with an error beyond that. */
+/* What a picture takes, and what it would take with other errors. Samples are those of the
+ * whole picture; seconds are of rendering, once all is made that lasts. */
 typedef struct view {
     zt_image *image;
-    double least_s, error, more_s;
+    double many;   /* times more pixels than it the frame has */
+    double least;  /* samples with an error of 1 */
+    double growth; /* their time grows by pixels to this power */
+    int known;     /* number of the smallest error that this or a smaller one was seen with; */
+    int error;     /* of the one that this was seen with last, */
+    double samples, all_s; /* and what it took */
+    double sample_s;       /* what each one takes, further ones, too */
+    double times;          /* as many as are expected come true */
+    zt_expected expected;
 } view;
 
-static zt_status see_least(view *v, pilot *p, int64_t frame) {
-    taken t;
-    v->least_s = INFINITY;
-    for (int i = 0; i < (v->image == p->small ? 2 : 1); i++) {
-        ZT_TRY(measure_adaptive(&t, p, frame, v->image, 1));
-        v->least_s = fmin(v->least_s, t.render_s);
-    }
-    return ZT_OK;
+/* Where it was seen with a smaller error, further samples are thought to be as errors are. */
+static double samples_with(const view *v, int error) {
+    const double *further = v->expected.further;
+    if (error < v->error)
+        return v->least +
+               (v->samples - v->least) * zt_expect_error(v->error) / zt_expect_error(error);
+    return v->samples + v->times * (further[error] - further[v->error]);
 }
 
-static zt_status see_more(view *v, pilot *p, int64_t frame, double error) {
+static double seconds_with(const view *v, int error) {
+    return v->all_s + v->sample_s * (samples_with(v, error) - v->samples);
+}
+
+static double least_s_of(const view *v) {
+    return fmax(v->all_s - v->sample_s * (v->samples - v->least), SEEN * v->all_s);
+}
+
+/* The smallest error that takes no longer than so. */
+static int error_within(const view *v, double most_s) {
+    int error = 0;
+    while (error < LAST && seconds_with(v, error + 1) <= most_s) error++;
+    return error;
+}
+
+/* Looks at it with an error. */
+static zt_status see(view *v, pilot *p, int64_t frame, int error) {
+    zt_sampling sampling = p->plan->sampling;
     taken t;
-    ZT_TRY(measure_adaptive(&t, p, frame, v->image, error));
+    sampling.error = zt_expect_error(error);
+    sampling.max = ZT_PLAN_SAMPLES_MAX;
+    if (v->sample_s > 0)
+        sampling.mean_max = (int)fmin(
+            ceil((v->least + fmax(p->left_s, 0) / v->sample_s) / pixels_of(v->image)) + 1,
+            ZT_PLAN_SAMPLES_MAX);
+    ZT_TRY(take(&t, p, frame, v->image, sampling));
+    p->fixed_s = t.fixed_s;
+    v->samples = (double)p->renderer->cost.rays.primary;
+    v->all_s = t.render_s;
+    v->sample_s = v->all_s / v->samples;
+    zt_expect(&v->expected, p->renderer->work, ZT_PLAN_SAMPLES_MAX);
     v->error = error;
-    v->least_s = fmin(v->least_s, t.render_s);
-    v->more_s = fmax(t.render_s - v->least_s, SEEN * v->least_s);
+    v->known = v->known > error ? v->known : error;
+    /* It may have been stopped before it got there. */
+    while (v->error > 0 && v->expected.further[v->error] > SEEN * v->samples) v->error--;
     return ZT_OK;
 }
 
-/* The smallest error of a small picture that takes no more than so long beyond the least, or
- * with which nothing asks for more samples. */
-static zt_status descend_small(view *small, pilot *p, int64_t frame, double most_s) {
-    const double none = 1e-5;
-    double step = 4;
-    ZT_TRY(see_more(small, p, frame, 0.1));
-    while (small->more_s < most_s) {
-        bool little = small->more_s < 0.2 * small->least_s;
-        view next = *small;
-        if (small->error < none) {
-            p->plan->enough = little ? 1 / small->error : 0;
-            return ZT_OK;
-        }
-        if (!little) step = 2;
-        ZT_TRY(see_more(&next, p, frame, small->error / step));
-        if (next.more_s <= most_s)
-            *small = next;
-        else if (step > 2)
-            step = 2;
-        else
-            return ZT_OK;
+/* What a picture of so many times more pixels is expected to be. Edges, of which there is the
+ * most to be had, grow as sides do; random light is everywhere. */
+static view enlarged(const view *v, double many) {
+    view large = *v;
+    double more = v->expected.is_random ? many : sqrt(many), least_s = least_s_of(v);
+    large.many = v->many / many;
+    large.least = many * v->least;
+    large.samples = large.least + more * (v->samples - v->least);
+    large.all_s = pow(many, v->growth) * least_s + more * (v->all_s - least_s);
+    for (int i = 0; i < ZT_EXPECT_COUNT; i++) large.expected.further[i] *= more;
+    return large;
+}
+
+/* Looks with ever smaller errors, in so many seconds, as far as the frame has time for; and
+ * learns from each. */
+static zt_status descend(view *v, pilot *p, int64_t frame, double left_s, double most_s) {
+    for (;;) {
+        const view old = *v, whole = enlarged(v, v->many);
+        int error = error_within(v, 0.7 * (left_s - p->fixed_s)),
+            most = error_within(&whole, most_s);
+        if (error > most) error = most;
+        bool far = error >= v->known + LEAP;
+        if (far) error = v->known + LEAP;
+        double worth_s = v->all_s + 0.5 * (v->all_s - least_s_of(v));
+        if (error <= v->error || (!far && seconds_with(v, error) < worth_s)) return ZT_OK;
+        ZT_TRY(see(v, p, frame, error));
+        left_s -= p->fixed_s + v->all_s;
+        if (v->error <= old.error) return ZT_OK;
+        double few = FEW * old.least, samples = fmax(v->samples - old.samples, 0);
+        double expected = old.expected.further[v->error] - old.expected.further[old.error];
+        v->times = (samples + few) / (expected + few);
     }
+}
+
+/* A picture of more pixels, first with about a third of the time. */
+static zt_status see_larger(view *v, pilot *p, int64_t frame, int size, double left_s,
+                            double most_s) {
+    const double small_s = least_s_of(v),
+                 many = pixels_of(p->sizes[size]) / pixels_of(v->image);
+    *v = enlarged(v, many);
+    v->image = p->sizes[size];
+    const view whole = enlarged(v, v->many);
+    double first_s = fmax(left_s / 3, fmin(1.5 * least_s_of(v), 0.6 * left_s));
+    int error = error_within(v, first_s), most = error_within(&whole, most_s / 2);
+    ZT_TRY(see(v, p, frame, error < most ? error : most));
+    ZT_TRY(descend(v, p, frame, left_s - p->fixed_s - v->all_s, most_s));
+    v->growth = fmin(fmax(log(least_s_of(v) / small_s) / log(many), 0.5), 1);
     return ZT_OK;
 }
 
-/* Goes down to the error that fills the time of a frame, or the pilot's but for `keep_s`; sets
- * the plan's power, by which time grows at the last error. */
-static zt_status descend(view *whole, pilot *p, int64_t frame, double frame_s, double keep_s) {
-    double error = whole->error;
-    for (bool first = true;; first = false) {
-        view next = *whole;
-        ZT_TRY(see_more(&next, p, frame, error));
-        if (!first && whole->more_s > 2 * SEEN * whole->least_s) {
-            double power = log(next.more_s / whole->more_s) / log(whole->error / error);
-            p->plan->power = (USUAL_POWER + fmin(fmax(power, 1), STEEPEST)) / 2;
-        }
-        *whole = next;
-        double room_s = fmin(p->left_s - keep_s, frame_s) - p->fixed_s - whole->least_s;
-        if (p->plan->enough > 0 || room_s < 1.5 * whole->more_s) return ZT_OK;
-        error /= pow(fmin(room_s / whole->more_s, 32), 1 / STEEPEST);
+/* Of the frame in the middle, a small picture and then the largest that there is time for
+ * twice; ends with what is expected of the whole one. */
+static zt_status see_sizes(view *v, pilot *p, int64_t frame, double keep_s, double most_s) {
+    for (int i = 0; i < 2; i++) ZT_TRY(see(v, p, frame, 0));
+    v->least = v->samples;
+    ZT_TRY(descend(v, p, frame, SMALL * (p->left_s - keep_s), most_s));
+    double left_s = p->left_s - keep_s;
+    int size = SIZES - 1;
+    while (size > 0 &&
+           TWICE * least_s_of(v) * pixels_of(p->sizes[size]) > left_s * pixels_of(v->image))
+        size--;
+    if (size > 0)
+        ZT_TRY(see_larger(v, p, frame, size, left_s, most_s));
+    else
+        ZT_TRY(descend(v, p, frame, left_s, most_s));
+    *v = enlarged(v, v->many);
+    return ZT_OK;
+}
+
+/* What a small picture takes with the least samples, and with an error beyond that. */
+static zt_status see_small(double *least_s, double *more_s, pilot *p, int64_t frame,
+                           double error) {
+    zt_sampling sampling = p->plan->sampling;
+    taken least, all;
+    sampling.max = ZT_PLAN_SAMPLES_MAX;
+    for (int i = 0; i < 2; i++) {
+        sampling.error = i ? error : 1;
+        ZT_TRY(take(i ? &all : &least, p, frame, p->sizes[0], sampling));
     }
+    *least_s = fmin(least.render_s, all.render_s);
+    *more_s = fmax(all.render_s - *least_s, SEEN * *least_s);
+    return ZT_OK;
 }
 
 /* The other frames are as many times the middle one as their small pictures are. */
-static zt_status see_others(pilot *p, view *small, int64_t middle, double error) {
+static zt_status see_others(pilot *p, int64_t middle, double error) {
     zt_plan *plan = p->plan;
     zt_cost cost = plan->costs[0];
-    ZT_TRY(see_more(small, p, middle, error));
-    double each_s = 2 * p->fixed_s + 2 * small->least_s + small->more_s;
+    double small_s, small_more_s, least_s, more_s;
+    ZT_TRY(see_small(&small_s, &small_more_s, p, middle, error));
+    double each_s = 2 * p->fixed_s + 2 * small_s + small_more_s;
     int count = (int)fmin(p->left_s / each_s, most_frames(plan));
     for (int i = 0; i < count && count > 1; i++) {
-        view other = *small;
         int64_t frame = spread_frame(plan, i, count);
-        ZT_TRY(see_least(&other, p, frame));
-        ZT_TRY(see_more(&other, p, frame, error));
-        plan->costs[i] = (zt_cost){frame, cost.fixed_s * other.least_s / small->least_s,
-                                   cost.unit_s * other.more_s / small->more_s, 1};
+        ZT_TRY(see_small(&least_s, &more_s, p, frame, error));
+        plan->costs[i] = (zt_cost){frame, cost.fixed_s * least_s / small_s,
+                                   cost.unit_s * more_s / small_more_s, 1};
         plan->cost_count = count;
     }
     return ZT_OK;
@@ -277,37 +352,35 @@ static zt_status pilot_adaptive(pilot *p, double frame_s) {
     zt_plan *plan = p->plan;
     bool few = most_frames(plan) < ZT_COSTS_MAX; /* have too little time to be compared */
     int64_t middle = spread_frame(plan, 0, 1);
-    view small = {.image = p->small}, whole = {.image = p->images[0]};
-    /* Between edges alone and areas alone. */
-    double times = 0.7 * p->many, keep_s = few ? 0 : p->left_s / 4;
-    plan->sample_s = p->unit_s;
-    ZT_TRY(see_least(&small, p, middle));
-    whole.least_s = p->many * small.least_s;
-    if (3 * (p->fixed_s + whole.least_s) < p->left_s) ZT_TRY(see_least(&whole, p, middle));
-    double room_s = fmin(p->left_s - keep_s, frame_s) - p->fixed_s - whole.least_s;
-    bool fits = room_s > 0.3 * whole.least_s;
-    /* Two pictures, or one alone where the least samples take most of the time. */
-    double part = room_s > 2 * whole.least_s ? 6 : 1;
-    double most_s = fits ? room_s / part : frame_s - p->fixed_s - whole.least_s;
-    ZT_TRY(descend_small(&small, p, middle, most_s / times));
-    plan->power = USUAL_POWER;
-    whole.error = small.error;
-    whole.more_s = times * small.more_s;
-    if (fits) ZT_TRY(descend(&whole, p, middle, frame_s, keep_s));
-    if (plan->enough > 0) plan->enough = pow(plan->enough, plan->power);
+    double pixels = pixels_of(p->sizes[SIZES - 1]);
+    view v = {.image = p->sizes[0], .growth = 1, .times = 1};
+    v.many = pixels / pixels_of(v.image);
+    ZT_TRY(see_sizes(&v, p, middle, few ? 0 : p->left_s / 4, frame_s - p->fixed_s));
+    const double least_s = least_s_of(&v);
+    int error = error_within(&v, frame_s - p->fixed_s);
+    while (error < LAST && seconds_with(&v, error) < (1 + SEEN) * least_s) error++;
+    double more_s = fmax(seconds_with(&v, error) - least_s, SEEN * least_s);
+    /* By half an octave to both sides. */
+    int to = error + ZT_EXPECT_OCTAVE / 2, from = to - ZT_EXPECT_OCTAVE;
+    double to_s = seconds_with(&v, to < LAST ? to : LAST) - least_s,
+           from_s = seconds_with(&v, from > 0 ? from : 0) - least_s;
+    plan->power = from_s > 0 ? fmin(fmax(log2(to_s / from_s), 0.5), 2) : 2;
+    double work = pow(zt_expect_error(error), -plan->power);
+    if (v.error == LAST && v.samples < (1 + SEEN) * v.least) plan->enough = work;
+    plan->sample_s = pixels * v.sample_s;
     plan->cost_count = 1;
-    plan->costs[0] = (zt_cost){middle, p->fixed_s + whole.least_s,
-                               whole.more_s * pow(whole.error, plan->power), 1};
-    return few ? ZT_OK : see_others(p, &small, middle, whole.error);
+    plan->costs[0] = (zt_cost){middle, p->fixed_s + least_s, more_s / work, 1};
+    return few ? ZT_OK : see_others(p, middle, zt_expect_error(error));
 }
 
+/* Each with twice the sides of the one before. */
 static zt_status make_images(pilot *p, const zt_output_format *format) {
-    int width = (format->width + SMALLER - 1) / SMALLER,
-        height = (format->height + SMALLER - 1) / SMALLER;
-    p->many = (double)format->width * format->height / ((double)width * height);
-    ZT_TRY(zt_image_create(&p->small, width, height));
-    ZT_TRY(zt_image_create(&p->images[0], format->width, format->height));
-    return zt_image_create(&p->images[1], format->width, format->height);
+    for (int i = 0; i < SIZES; i++) {
+        int less = 1 << (SIZES - 1 - i);
+        ZT_TRY(zt_image_create(&p->sizes[i], (format->width + less - 1) / less,
+                               (format->height + less - 1) / less));
+    }
+    return zt_image_create(&p->other, format->width, format->height);
 }
 
 zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher) {
@@ -319,11 +392,9 @@ zt_status zt_pilot_run(zt_plan *plan, zt_renderer *r, const zt_watcher *watcher)
     if (adaptive) p.left_s = fmax(p.left_s, ADAPTIVE_SHARE * all_s / frame_count);
     if (watcher) p.watcher = (zt_watcher){NULL, watcher->stopped, watcher->user};
     zt_status status = make_images(&p, &r->format);
-    if (status == ZT_OK) status = look(&p, spread_frame(plan, 0, 1));
     if (status == ZT_OK)
         status = adaptive ? pilot_adaptive(&p, all_s / frame_count) : pilot_even(&p);
-    zt_image_free(&p.small);
-    zt_image_free(&p.images[0]);
-    zt_image_free(&p.images[1]);
+    for (int i = 0; i < SIZES; i++) zt_image_free(&p.sizes[i]);
+    zt_image_free(&p.other);
     return status;
 }
