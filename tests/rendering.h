@@ -2,13 +2,16 @@
 #ifndef ZT_TESTS_RENDERING_H
 #define ZT_TESTS_RENDERING_H
 
-#include "render/render.h"
+#include "render/expect.h"
 #include "scenes.h"
 
 static const vec3 white = {1, 1, 1};
 
 /* Which of them all of the following render in. */
 static zt_precision precision = ZT_PRECISION_AUTO;
+
+/* Where they leave what smaller errors would take; NULL: nowhere. */
+static zt_expected *expected = NULL;
 
 /* Renders an exposure to an image that the caller frees, with the channels "samples" and
  * "error". The random numbers are the sampling's seed's. */
@@ -43,6 +46,7 @@ static inline zt_image *render_exposure(zt_render_count *count, const zt_exposur
     assert_int_equal(zt_warp_prepare(&job.warp, &sampling, &arena), ZT_OK);
     assert_int_equal(zt_thin_prepare(&job.thin, exposure, width, height, &arena), ZT_OK);
     assert_int_equal(zt_render(image, count, &job, work, pool), ZT_OK);
+    if (expected) zt_expect(expected, work, sampling.max);
     zt_render_work_close(work);
     zt_pool_close(&pool);
     zt_meshes_close(&meshes);

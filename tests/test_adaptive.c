@@ -128,6 +128,38 @@ static void means_are_bounded(void **state) {
     }
 }
 
+/* What a picture would take with errors that are smaller by two to eight times is known from
+ * its pixels, to within a half. */
+static void expectations_come_true(void **state) {
+    (void)state;
+    static test_scene s;
+    things(&s);
+    const zt_exposure exposure = zt_exposure_of(&s.scene);
+    for (int edges = 0; edges < 2; edges++) {
+        const int begin = 4 * ZT_EXPECT_OCTAVE;
+        zt_sampling sampling = {
+            .min = 4, .max = 65536, .error = zt_expect_error(begin), .edges = edges};
+        static zt_expected first;
+        zt_render_count before, after;
+        expected = &first;
+        zt_image *image = render_exposure(&before, &exposure, WIDTH, HEIGHT, sampling, 2);
+        expected = NULL;
+        zt_image_free(&image);
+        assert_true(first.further[begin] < 0.05 * (double)before.samples);
+        for (int octave = 1; octave <= 3; octave++) {
+            int i = begin + octave * ZT_EXPECT_OCTAVE;
+            sampling.error = zt_expect_error(i);
+            image = render_exposure(&after, &exposure, WIDTH, HEIGHT, sampling, 2);
+            zt_image_free(&image);
+            double further = (double)(after.samples - before.samples);
+            if (getenv("ZT_TEST_PRINTS"))
+                print_message("edges %d, %d octaves: %g expected, %g taken\n", edges, octave,
+                              first.further[i], further);
+            assert_true(first.further[i] > further / 1.5 && first.further[i] < further * 1.5);
+        }
+    }
+}
+
 /* A target is met: by nearly all pixels, each within 2.5 times of it, and by the picture. */
 static void targets_are_met(void **state) {
     (void)state;
@@ -192,9 +224,8 @@ static void tiles_have_no_borders(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(estimates_are_errors),
-        cmocka_unit_test(means_are_bounded),
-        cmocka_unit_test(targets_are_met),
+        cmocka_unit_test(estimates_are_errors),   cmocka_unit_test(means_are_bounded),
+        cmocka_unit_test(expectations_come_true), cmocka_unit_test(targets_are_met),
         cmocka_unit_test(tiles_have_no_borders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
