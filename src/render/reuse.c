@@ -282,7 +282,7 @@ void zt_reuse_end(zt_frame *f, bool done) {
     bool worth = last * WORTH >= f->tile_count;
     r->fruitless = worth ? 0 : r->fruitless + 1;
     if (r->tireless || r->fruitless < FRUITLESS_MAX) return;
-    r->rest = 1 << min_int(r->fruitless, REST_MAX);
+    r->rest = 1 << min_int(2 * (r->fruitless - 1), REST_MAX);
 }
 
 /* ---- where pixels take as many samples as they ask for --------------------------------------

@@ -40,7 +40,7 @@
  *
  * What it costs. Taking footprints down takes a hundredth of a frame or two, asking them less;
  * a first frame, and one after the camera moved, take down nothing. Where hardly a tile is
- * copied, it is left for twice as many frames each time. */
+ * copied, it is left for four times as many frames each time. */
 #ifndef ZT_RENDER_REUSE_H
 #define ZT_RENDER_REUSE_H
 
