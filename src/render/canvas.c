@@ -41,6 +41,9 @@ zt_status zt_canvas_open(zt_canvas *canvas, int width, int height, bool is_signe
     if (is_signed && !canvas->negative) {
         canvas->negative = calloc(count, sizeof *canvas->negative);
         if (!canvas->negative) return ZT_EMEMORY;
+    } else if (!is_signed) { /* as it is, there are such samples */
+        free(canvas->negative);
+        canvas->negative = NULL;
     }
     bool few = canvas->slot_count < INT32_MAX / 8 && 8 * (size_t)canvas->slot_count < count;
     for (int32_t i = 0; few && i < canvas->slot_count; i++) {
