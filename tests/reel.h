@@ -24,7 +24,8 @@ typedef struct reel {
     bool transparent;
     int64_t shown, copied; /* tiles; */
     int64_t kept;          /* among the copied, from what was kept */
-    int64_t left_out;      /* samples of the last frame */
+    int64_t left_out;      /* samples of the last frame; */
+    int64_t samples;       /* and those that were taken */
     bool fresh; /* what it is compared with shares nothing with frames before: no hierarchies */
 } reel;
 
@@ -144,6 +145,7 @@ static inline int64_t reel_expose(reel *r, const zt_exposure *exposure) {
     assert_int_equal(count.tiles, REEL_TILES);
     assert_int_equal(alone.tiles_copied, 0);
     r->left_out = count.left_out;
+    r->samples = count.samples;
     r->shown += count.tiles;
     r->copied += count.tiles_copied;
     r->kept += count.tiles_kept;

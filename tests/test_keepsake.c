@@ -17,6 +17,11 @@
 
 static const char arithmetic[] = "of tests";
 
+static const zt_sampling one = {.min = 1, .max = 1};
+static const zt_sampling edges = {.min = 1, .max = 16, .error = 0.02, .edges = true};
+static const zt_sampling signed_edges = {
+    .min = 1, .max = 16, .error = 0.02, .edges = true, .filter = ZT_FILTER_MITCHELL};
+
 typedef struct keepsake {
     unsigned char *bytes;
     size_t size;
@@ -79,13 +84,12 @@ static void assert_between(int64_t copied, int least, int most) {
         fail_msg("%d tiles are copied, not %d to %d", (int)copied, least, most);
 }
 
-/* Each edit of the same scene changes the picture a little, and little is rendered. */
-static void an_edit_costs_what_it_changes(void **state) {
-    (void)state;
+static void edit_and_count(const zt_sampling *sampling) {
     static test_scene s, edited;
     keepsake k = {0};
     reel r;
     reel_open(&r, NULL, 0);
+    r.sampling = *sampling;
     row_of_balls(&s);
     assert_int_equal(show_with(&r, NULL, &s.scene), 0);
     keep(&k, &r);
@@ -116,6 +120,73 @@ static void an_edit_costs_what_it_changes(void **state) {
     }
     s.scene.camera.position.x += 0.1; /* other rays */
     assert_int_equal(show_with(&r, &k, &s.scene), 0);
+    free(k.bytes);
+    reel_close(&r);
+}
+
+/* Each edit of the same scene changes the picture a little, and little is rendered. */
+static void an_edit_costs_what_it_changes(void **state) {
+    (void)state;
+    edit_and_count(&one);
+    edit_and_count(&edges);
+    edit_and_count(&signed_edges);
+}
+
+/* How many samples a frame takes, and what it shows. */
+static int64_t samples_with(reel *r, const keepsake *k, const zt_scene *scene) {
+    show_with(r, k, scene);
+    return r->samples;
+}
+
+/* At edges, what all pixels came to is kept: of the same scene no sample is taken again. */
+static void no_sample_is_taken_twice(void **state) {
+    (void)state;
+    static test_scene s;
+    keepsake k = {0};
+    reel r;
+    reel_open(&r, NULL, 0);
+    r.sampling = edges;
+    row_of_balls(&s);
+    int64_t all = samples_with(&r, NULL, &s.scene);
+    keep(&k, &r);
+    assert_true(all > REEL_WIDTH * REEL_HEIGHT);
+    assert_int_equal(samples_with(&r, &k, &s.scene), 0);
+    free(k.bytes);
+    reel_close(&r);
+}
+
+/* Where decisions go from pixel to pixel, tiles come from one picture alone: that which has
+ * more of them. */
+static void the_better_one_is_copied_from(void **state) {
+    (void)state;
+    static test_scene s;
+    keepsake k = {0};
+    reel r;
+    reel_open(&r, NULL, 0);
+    for (int way = 0; way < 4; way++) {
+        zt_picture picture = {0};
+        bool of_kept = way & 1;
+        r.sampling = way & 2 ? edges : (zt_sampling){.min = 4, .max = 16, .error = 0.02};
+        row_of_balls(&s);
+        zt_sphere *moves = &s.objects[4].sphere, *edited = &s.objects[1].sphere;
+        if (of_kept) edited->radius = 0.29; /* a small edit, and much that moves */
+        show_with(&r, NULL, &s.scene);
+        keep(&k, &r);
+        take_out(&picture, &k);
+        edited->radius = 0.3;
+        if (of_kept) moves->center.y = 0.5;
+        show_with(&r, NULL, &s.scene);
+        reel_show(&r, &s.scene);
+        if (of_kept) moves->center.y = -0.7;
+        if (!of_kept) s.objects[8].sphere.radius = 0.29;
+        r.reuse->kept = &picture;
+        r.kept = 0;
+        int64_t copied = reel_show(&r, &s.scene);
+        assert_in_range(copied, 1, REEL_TILES - 1);
+        if (of_kept) assert_int_equal(r.kept, copied);
+        r.reuse->kept = NULL;
+        zt_picture_close(&picture);
+    }
     free(k.bytes);
     reel_close(&r);
 }
@@ -159,7 +230,7 @@ static void either_has_what_the_other_has_not(void **state) {
 /* ---- random edits ---------------------------------------------------------------------------
  */
 
-enum { SCENES = 200, EDITS = 8, KEPT = 3 };
+enum { SCENES = 120, EDITS = 8, KEPT = 3 };
 
 /* A scene that is edited again and again, shown by runs that have their meshes elsewhere. */
 static void edit_scene(reel reels[2], uint64_t key, const zt_mesh *meshes) {
@@ -169,9 +240,13 @@ static void edit_scene(reel reels[2], uint64_t key, const zt_mesh *meshes) {
     draw d = {key, 0};
     zt_picture picture = {0};
     draw_scene(&d, &s, meshes);
-    zt_sampling sampling = {.filter = draw_below(&d, 3) ? ZT_FILTER_BOX : ZT_FILTER_TENT,
-                            .seed_fixed = draw_below(&d, 3) == 0};
+    const zt_filter filters[] = {ZT_FILTER_BOX, ZT_FILTER_TENT, ZT_FILTER_MITCHELL};
+    zt_sampling sampling = {.filter = filters[draw_below(&d, 3)],
+                            .seed_fixed = draw_below(&d, 3) == 0,
+                            .error = 0.03,
+                            .edges = draw_below(&d, 3) == 0};
     sampling.min = sampling.max = samples[draw_below(&d, 4)];
+    if (sampling.edges || draw_below(&d, 3) == 0) sampling.max = 16;
     zt_precision precision = draw_below(&d, 3);
     bool transparent = draw_below(&d, 4) == 0;
     for (int i = 0; i < EDITS; i++) {
@@ -186,7 +261,8 @@ static void edit_scene(reel reels[2], uint64_t key, const zt_mesh *meshes) {
         r->reuse->kept = from->bytes ? &picture : NULL;
         reel_show(r, &s.scene);
         r->reuse->kept = NULL;
-        keep(&kept[draw_below(&d, KEPT)], r);
+        keepsake *to = &kept[draw_below(&d, KEPT)];
+        if (r->reuse->last.whole) keep(to, r); /* not so where it is rendered by itself */
         for (int k = draw_below(&d, 3); k >= 0; k--) edit(&d, &s);
     }
     for (int i = 0; i < KEPT; i++) free(kept[i].bytes);
@@ -211,10 +287,12 @@ static void after_any_edit_it_is_the_same(void **state) {
 /* ---- bytes ----------------------------------------------------------------------------------
  */
 
+/* All that pictures may have is there. */
 static void make_keepsake(keepsake *k) {
     static test_scene s;
     reel r;
     reel_open(&r, NULL, 0);
+    r.sampling = signed_edges;
     row_of_balls(&s);
     show_with(&r, NULL, &s.scene);
     keep(k, &r);
@@ -244,6 +322,28 @@ static void damage_is_found(void **state) {
     take_out(&picture, &k);
     zt_picture_close(&picture);
     free(k.bytes);
+}
+
+static void assert_sums_equal(const zt_canvas_sum *a, const zt_canvas_sum *b) {
+    assert_memory_equal(a, b, offsetof(zt_canvas_sum, taken));
+    assert_int_equal(a->taken, b->taken);
+}
+
+/* Each pixel's, one after the other; returns how many there are. */
+static int compare_rounds(const zt_rounds *a, const zt_rounds *b) {
+    int count = 0;
+    for (int pixel = 0; pixel < REEL_WIDTH * REEL_HEIGHT; pixel++) {
+        uint32_t i = a->first[pixel], k = b->first[pixel];
+        for (; i && k; i = a->rounds[i].next, k = b->rounds[k].next) {
+            const zt_round *x = &a->rounds[i], *y = &b->rounds[k];
+            assert_sums_equal(&x->sum, &y->sum);
+            assert_sums_equal(&a->negative[i], &b->negative[k]);
+            assert_true(x->error == y->error && x->step == y->step && x->strange == y->strange);
+            count++;
+        }
+        assert_true(!i && !k);
+    }
+    return count;
 }
 
 /* Each truth and number is itself again. */
@@ -291,6 +391,11 @@ static void all_of_it_is_kept(void **state) {
         assert_int_equal(other->blind, o->blind);
         assert_int_equal(other->faint, o->faint);
         assert_true(other->brightest == o->brightest);
+        assert_memory_equal(again.pixels, picture.pixels,
+                            4 * sizeof(float) * REEL_WIDTH * REEL_HEIGHT);
+        assert_memory_equal(again.paths, picture.paths,
+                            sizeof(uint32_t) * REEL_WIDTH * REEL_HEIGHT);
+        assert_true(compare_rounds(&picture.rounds, &again.rounds) > 100);
     }
     zt_picture_close(&picture);
     zt_picture_close(&again);
@@ -334,6 +439,7 @@ static void ask_all(const zt_picture *picture, const zt_outline *now) {
 /* Somebody wrote anything, with the right checksum: it is a picture or none, and nothing breaks
  * where tiles are looked for in it. */
 static void hostile_bytes_break_nothing(void **state) {
+    enum { HEAD = sizeof(zt_keepsake_head) };
     (void)state;
     static test_scene s;
     keepsake k = {0};
@@ -347,12 +453,12 @@ static void hostile_bytes_break_nothing(void **state) {
     show_with(&r, NULL, &s.scene);
     for (int i = 0; i < 3000; i++) {
         size_t size =
-            draw_below(&d, 3) ? k.size : 120 + (size_t)draw_below(&d, (int)k.size - 120);
+            draw_below(&d, 3) ? k.size : HEAD + (size_t)draw_below(&d, (int)k.size - HEAD);
         unsigned char *bytes = malloc(size);
         zt_keepsake_head head;
         memcpy(bytes, k.bytes, size);
         for (int n = draw_below(&d, 8); n >= 0; n--) {
-            size_t from = draw_below(&d, 2) ? 40 : 120;
+            size_t from = draw_below(&d, 2) ? 40 : HEAD;
             bytes[from + (size_t)draw_below(&d, (int)(size - from))] =
                 draw_below(&d, 2) ? 255 : (unsigned char)draw_below(&d, 256);
         }
@@ -375,7 +481,9 @@ static void hostile_bytes_break_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edit_costs_what_it_changes),
+        cmocka_unit_test(no_sample_is_taken_twice),
         cmocka_unit_test(either_has_what_the_other_has_not),
+        cmocka_unit_test(the_better_one_is_copied_from),
         cmocka_unit_test(after_any_edit_it_is_the_same),
         cmocka_unit_test(all_of_it_is_kept),
         cmocka_unit_test(damage_is_found),

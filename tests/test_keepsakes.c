@@ -99,6 +99,22 @@ static void edits_are_cheap(void **state) {
     assert_int_equal(count_files(KEPT, &size), 4);
 }
 
+/* At edges likewise; and with a lower error only those samples are taken that are new. */
+static void edges_are_kept(void **state) {
+    (void)state;
+#define EDGES                                                                                  \
+    "render film.yaml -o " TARGET " --set film.quality=edges --threads 1 --stats "             \
+    "--check-reuse "
+    write_film("", "red", 6);
+    render(EDGES "--samples 64-256 --error 0.0003", 0, 0, 6);
+    write_film("", "blue", 6);
+    render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
+    write_film(ball, "blue", 6);
+    render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
+    render(EDGES "--samples 64-256 --error 0.0002", 6, 100, 6);
+    render(EDGES "--samples 128-256 --error 0.0002", 0, 0, 6);
+}
+
 /* Another size, other samples: nothing fits any more, and it is replaced. */
 static void other_settings_replace_what_was_kept(void **state) {
     (void)state;
@@ -237,6 +253,7 @@ static void parts_keep_their_own(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_DIRECTORY(edits_are_cheap),
+        IN_DIRECTORY(edges_are_kept),
         IN_DIRECTORY(other_settings_replace_what_was_kept),
         IN_DIRECTORY(movies_and_previews),
         IN_DIRECTORY(room_is_bounded),

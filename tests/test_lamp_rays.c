@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "tracer/footprint.h"
 #include "tracing.h"
 
 static const vec3 down = {0, -1, 0};
@@ -88,7 +89,6 @@ static void test_same_bits_moving(void **state) {
         rays.sample[i] = 5;
     }
     rays.count = ZT_BATCH - 3;
-    rays.wants_path = true;
     for (int count = 2; count <= 3; count++) {
         zt_exposure exposure = {.moments = moments + (3 - count),
                                 .times = count == 3 ? times : (const double[]){0, 1},
@@ -98,8 +98,11 @@ static void test_same_bits_moving(void **state) {
             for (int i = 0; i < 4; i++) {
                 setenv("ZOETROPE_ISA", names[i], 1);
                 stage st;
+                zt_labels labels;
                 open_stage(&st, &exposure);
                 assert_true(st.ready.moves && st.ready.random);
+                assert_int_equal(zt_labels_make(&labels, &st.ready, &st.arena), ZT_OK);
+                rays.labels = &labels;
                 st.ready.kernel->trace(&light[i], st.ready.tracer, &rays, st.work);
                 close_stage(&st);
                 size_t size = (size_t)rays.count * sizeof(float);
@@ -176,8 +179,10 @@ static void trace_paths(zt_radiance *light, const zt_scene *scene, const double 
         rays.dy[i] = toward[i][1];
         rays.dz[i] = -1;
     }
+    zt_labels labels;
+    assert_int_equal(zt_labels_make(&labels, &st.ready, &st.arena), ZT_OK);
     rays.count = count;
-    rays.wants_path = true;
+    rays.labels = &labels;
     st.ready.kernel->trace(light, st.ready.tracer, &rays, st.work);
     close_stage(&st);
 }

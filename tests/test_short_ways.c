@@ -124,13 +124,16 @@ typedef struct answer {
 
 static void ask(answer *to, zt_rays *rays, stage *st) {
     zt_outline outline;
+    zt_labels labels;
     assert_int_equal(zt_outline_make(&outline, &st->ready, &st->arena), ZT_OK);
+    assert_int_equal(zt_labels_make(&labels, &st->ready, &st->arena), ZT_OK);
     *to = (answer){0};
-    rays->wants_path = rays->wants_cover = true;
+    rays->labels = &labels;
+    rays->wants_cover = true;
     rays->footprint = &to->footprint;
     rays->outline = &outline;
     to->met = st->ready.kernel->trace(&to->light, st->ready.tracer, rays, st->work);
-    rays->wants_path = false;
+    rays->labels = NULL;
     rays->footprint = NULL;
 }
 

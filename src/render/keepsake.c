@@ -5,13 +5,13 @@
 
 #include "base/hash.h"
 
-static_assert(sizeof(zt_keepsake_head) == 120, "there are no bytes between fields");
+static_assert(sizeof(zt_keepsake_head) == 136, "there are no bytes between fields");
 
 enum { CHECKED = offsetof(zt_keepsake_head, checksum) + sizeof(zt_hash) };
 
 /* Changes whenever bytes, or what footprints and outlines say, become others. */
 static zt_hash version_of(const char *arithmetic) {
-    const uint64_t numbers[] = {3,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
+    const uint64_t numbers[] = {4,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
                                 ZT_BATCH, sizeof(zt_footprint), sizeof(zt_outline)};
     const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
                              zt_hash_bytes(arithmetic, strlen(arithmetic))};
@@ -114,13 +114,66 @@ static void pass_pixels(stream *s, zt_picture *p, bool opaque) {
     } else if (s->to) {
         for (size_t i = 0; i < count; i++) memcpy(s->to + i * COLOR, pixels + 4 * i, COLOR);
         s->to += count * COLOR;
-    } else if (s->left == count * COLOR) {
+    } else if (s->left >= count * COLOR) {
         for (size_t i = 0; i < count; i++) {
             memcpy(pixels + 4 * i, s->from + i * COLOR, COLOR);
             pixels[4 * i + 3] = 1;
         }
-        s->left = 0;
+        s->from += count * COLOR;
+        s->left -= count * COLOR;
+    } else {
+        s->lacking = true;
     }
+}
+
+/* What is said of a round before it: that there is one; what of it is so. */
+enum { THERE = 1, STRANGE = 2, COVERS = 4 };
+
+/* How many samples met something is 0 in all where nobody asked. */
+static void pass_sum(stream *s, zt_canvas_sum *sum, bool covers) {
+    pass(s, &sum->r, offsetof(zt_canvas_sum, a));
+    if (covers)
+        pass(s, &sum->a, sizeof sum->a);
+    else
+        sum->a = 0;
+    pass(s, &sum->square, sizeof sum->square);
+    pass(s, &sum->taken, sizeof sum->taken);
+}
+
+static uint8_t say_round(const zt_rounds *r, uint32_t number) {
+    if (!number) return 0;
+    const zt_round *round = &r->rounds[number];
+    const bool covers = round->sum.a != 0 || (r->negative && r->negative[number].a != 0);
+    return (uint8_t)(THERE | (round->strange ? STRANGE : 0) | (covers ? COVERS : 0));
+}
+
+static void pass_round(stream *s, zt_rounds *r, uint32_t number, uint8_t what) {
+    zt_round *round = &r->rounds[number];
+    pass_sum(s, &round->sum, what & COVERS);
+    if (r->negative) pass_sum(s, &r->negative[number], what & COVERS);
+    pass(s, &round->error, sizeof round->error);
+    pass(s, &round->step, sizeof round->step);
+    round->strange = what & STRANGE;
+}
+
+/* The rounds of a pixel: those that are read get the next numbers. */
+static void pass_rounds(stream *s, zt_rounds *r, uint32_t *next) {
+    for (;; next = &r->rounds[*next].next) {
+        uint8_t what = s->to ? say_round(r, *next) : 0;
+        pass(s, &what, sizeof what);
+        if (!s->to) {
+            s->lacking |= what && r->count == r->room;
+            *next = what && !s->lacking ? r->count++ : 0;
+        }
+        if (!*next) return;
+        pass_round(s, r, *next, what);
+    }
+}
+
+static void pass_edges(stream *s, zt_picture *p) {
+    pass(s, p->paths, pixel_count(p) * sizeof *p->paths);
+    for (size_t i = 0; i < pixel_count(p) && !s->lacking; i++)
+        pass_rounds(s, &p->rounds, &p->rounds.first[i]);
 }
 
 static void pass_all(stream *s, zt_picture *p, bool opaque) {
@@ -128,16 +181,21 @@ static void pass_all(stream *s, zt_picture *p, bool opaque) {
     for (size_t i = 0; i < footprint_count(p) && !s->lacking; i++)
         pass_footprint(s, &p->footprints[i]);
     pass_pixels(s, p, opaque);
+    if (p->at_edges) pass_edges(s, p);
 }
 
 /* ---- writing --------------------------------------------------------------------------------
  */
 
 size_t zt_keepsake_room(const zt_picture *p) {
+    const size_t of_pixel = p->at_edges ? sizeof *p->paths + 1 : 0;
+    const size_t of_round = sizeof *p->rounds.rounds + sizeof *p->rounds.negative;
     return sizeof(zt_keepsake_head) + sizeof p->outline +
            (size_t)p->outline.thing_count * sizeof *p->outline.things +
            (size_t)p->outline.lamp_count * sizeof *p->outline.lamps +
-           footprint_count(p) * sizeof *p->footprints + pixel_count(p) * 4 * sizeof(float);
+           footprint_count(p) * sizeof *p->footprints +
+           pixel_count(p) * (4 * sizeof(float) + of_pixel) +
+           (p->at_edges ? zt_rounds_count(&p->rounds) * of_round : 0);
 }
 
 static bool is_opaque(const zt_picture *p) {
@@ -159,6 +217,9 @@ void zt_keepsake_write(unsigned char *bytes, zt_keepsake_head *head, const zt_pi
     head->thing_count = p.outline.thing_count;
     head->lamp_count = p.outline.lamp_count;
     head->opaque = is_opaque(&p);
+    head->at_edges = p.at_edges;
+    head->is_signed = p.at_edges && p.rounds.negative;
+    head->round_count = p.at_edges ? zt_rounds_count(&p.rounds) : 0;
     pass_all(&s, &p, head->opaque);
     head->size = (uint64_t)(s.to - bytes);
     memcpy(bytes, head, sizeof *head);
@@ -178,12 +239,13 @@ void zt_keepsake_seal(unsigned char *bytes) {
  * least.
  */
 bool zt_keepsake_knows(const zt_keepsake_head *h, uint64_t size, const char *arithmetic) {
-    enum { LEAST = 60, SIDE_MAX = ZT_IMAGE_SIDE_MAX };
+    enum { LEAST = 60, LEAST_ROUND = 45, SIDE_MAX = ZT_IMAGE_SIDE_MAX };
     if (!zt_hash_equal(h->version, version_of(arithmetic)) || h->size != size) return false;
     if (h->width < 1 || h->height < 1 || h->width > SIDE_MAX || h->height > SIDE_MAX)
         return false;
     uint64_t pixels = (uint64_t)h->width * (uint64_t)h->height;
-    return h->thing_count >= 0 && h->lamp_count >= 0 && h->opaque <= 1 &&
+    return h->thing_count >= 0 && h->lamp_count >= 0 && h->opaque <= 1 && h->at_edges <= 1 &&
+           h->is_signed <= 1 && h->round_count <= size / LEAST_ROUND &&
            (uint64_t)h->thing_count <= size / LEAST &&
            (uint64_t)h->lamp_count <= size / LEAST && pixels <= size / (3 * sizeof(float));
 }
@@ -196,6 +258,13 @@ static bool make_outline(zt_picture *p, const zt_keepsake_head *h) {
     return p->outline.things && p->outline.lamps;
 }
 
+/* Without rounds, but with room for those of the keepsake. */
+static bool make_edges(zt_picture *p, const zt_keepsake_head *h) {
+    if (zt_picture_open_edges(p, h->is_signed) != ZT_OK) return false;
+    zt_rounds_reserve(&p->rounds, h->round_count);
+    return true;
+}
+
 bool zt_keepsake_read(zt_picture *p, const unsigned char *bytes, uint64_t size,
                       const char *arithmetic) {
     zt_keepsake_head head;
@@ -204,8 +273,10 @@ bool zt_keepsake_read(zt_picture *p, const unsigned char *bytes, uint64_t size,
     memcpy(&head, bytes, sizeof head);
     if (!zt_keepsake_knows(&head, size, arithmetic) ||
         !zt_hash_equal(head.checksum, zt_hash_bytes(bytes + CHECKED, (size_t)size - CHECKED)) ||
-        zt_picture_open(p, head.width, head.height) != ZT_OK || !make_outline(p, &head))
+        zt_picture_open(p, head.width, head.height) != ZT_OK || !make_outline(p, &head) ||
+        (head.at_edges && !make_edges(p, &head)))
         return false;
+    p->at_edges = head.at_edges;
     stream s = {.from = bytes + sizeof head, .left = (size_t)size - sizeof head};
     pass_all(&s, p, head.opaque);
     p->view = head.view;

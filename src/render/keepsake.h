@@ -2,7 +2,8 @@
  * later run, when the description has been edited.
  *
  * All numbers as they are in memory, one after the other: a head, the outline, the footprints,
- * R G B of all pixels, and A where there are some that do not cover all. What another version
+ * R G B of all pixels, and A where there are some that do not cover all; and of a picture at
+ * edges what the middles saw, how many rounds each pixel took, and these. What another version
  * wrote is unknown, and so is what has been damaged. */
 #ifndef ZT_RENDER_KEEPSAKE_H
 #define ZT_RENDER_KEEPSAKE_H
@@ -21,7 +22,9 @@ typedef struct zt_keepsake_head {
     uint64_t frame_key;
     int32_t width, height;
     int32_t thing_count, lamp_count;
-    uint64_t opaque; /* 1: there are no A, which are 1; or 0 */
+    uint64_t opaque; /* 1: there are no A, which are 1; or 0; and so are: */
+    uint32_t at_edges, is_signed;
+    uint64_t round_count;
 } zt_keepsake_head;
 
 /* At most so many bytes, of a picture that is whole. */

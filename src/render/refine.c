@@ -142,7 +142,7 @@ zt_status zt_refine(zt_frame *f) {
         double more = (double)canvas->round_count * j.more;
         if (j.asked > 0 && taken + more > most_samples(f)) continue; /* they stay as they are */
         taken += more;
-        if (f->rounds) zt_rounds_reserve(f->rounds, canvas->round_count);
+        if (f->rounds) zt_rounds_reserve(f->rounds, (size_t)canvas->round_count);
         run(f->pool, task_count(canvas->round_count, j.task_slots), zt_round_task, &j);
         if (f->stopped) return ZT_ESTOPPED;
         if (f->doubtful) return ZT_OK; /* all is rendered once more */

@@ -45,7 +45,9 @@ zt_status zt_render_work_push(zt_render_work **out, zt_arena *arena, int thread_
 }
 
 void zt_render_work_close(zt_render_work *work) {
-    if (work) zt_canvas_close(&work->canvas);
+    if (!work) return;
+    zt_canvas_close(&work->canvas);
+    zt_arena_free(&work->arena);
 }
 
 /* Lists pixels first … first + most - 1 of a tile; those beyond the edge of the picture are
@@ -117,7 +119,7 @@ static bool render_block(zt_frame *f, zt_render_thread *own, tile area, int firs
     const bool single = f->at_edges || job->sampling.max == 1;
     int count = list_pixels(own, f, area, first, most);
     if (count == 0) return true;
-    own->rays.wants_path = f->at_edges;
+    own->rays.labels = f->at_edges ? &f->labels : NULL;
     own->rays.wants_cover = job->transparent;
     if (!(single ? take_middles : sum_samples)(f, own, count)) return false;
     zt_pixels_fill(f->image->pixels, f->image->width, single ? &own->light : &own->sum,
@@ -302,8 +304,9 @@ static zt_status render_once(zt_frame *f) {
 static zt_status render_all(zt_frame *f) {
     const zt_render_job *job = f->job;
     f->even = zt_render_is_even(job);
-    /* Of random light, samples in the middle of pixels say little. */
-    f->at_edges = !f->even && job->sampling.edges && !zt_render_is_random(job);
+    f->at_edges = zt_render_is_at_edges(job);
+    zt_arena_reset(&f->work->arena);
+    if (f->at_edges) ZT_TRY(zt_labels_make(&f->labels, job->scene, &f->work->arena));
     if (f->even) fill_channels(f->image, &job->sampling);
     ZT_TRY(zt_reuse_begin(f));
     const zt_kernel *kernel = job->scene->kernel;

@@ -33,7 +33,7 @@ typedef struct zt_render_job {
     zt_sampling sampling;
     zt_reuse *reuse;  /* or NULL: nothing is copied; else */
     zt_hash view;     /* says which pictures' samples are the same rays: of the same lens, size,
-                         sampling and channels */
+                         channels, and what of the sampling may make a difference to that */
     bool transparent; /* A is how many samples met something, as colours count; else 1 */
     const zt_warp *warp; /* the sampling's filter made ready */
     const zt_thin
@@ -55,6 +55,12 @@ static inline bool zt_render_is_even(const zt_render_job *job) {
 static inline bool zt_render_is_random(const zt_render_job *job) {
     return job->scene->random || job->scene->moves || zt_lens_has_aperture(job->lens) ||
            zt_lens_moves(job->lens);
+}
+
+/* Whether further samples are taken at edges alone: of random light, those in the middle of
+ * pixels say little. */
+static inline bool zt_render_is_at_edges(const zt_render_job *job) {
+    return job->sampling.edges && !zt_render_is_even(job) && !zt_render_is_random(job);
 }
 
 /* What keeps tiles of such frames from being copied from one to the next where the camera

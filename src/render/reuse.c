@@ -45,6 +45,12 @@ zt_status zt_picture_open(zt_picture *p, int width, int height) {
     return ZT_OK;
 }
 
+zt_status zt_picture_open_edges(zt_picture *p, bool is_signed) {
+    if (!p->paths) p->paths = calloc((size_t)p->width * (size_t)p->height, sizeof *p->paths);
+    if (!p->paths) return ZT_EMEMORY;
+    return zt_rounds_open(&p->rounds, p->width, p->height, is_signed);
+}
+
 void zt_reuse_close(zt_reuse **slot) {
     zt_reuse *r = *slot;
     if (!r) return;
@@ -58,7 +64,7 @@ void zt_reuse_close(zt_reuse **slot) {
 }
 
 const char *zt_reuse_hindrance(const zt_render_job *job) {
-    if (!zt_render_is_even(job) && job->sampling.mean_max > 0)
+    if (!zt_render_is_even(job) && !zt_render_is_at_edges(job) && job->sampling.mean_max > 0)
         return "all pixels share so many samples: no tiles are copied from the frame before";
     if (job->sampling.seed_fixed) return NULL;
     if (zt_lens_moves(job->lens))
@@ -116,14 +122,6 @@ static bool other_rays(const zt_render_job *job, bool same_numbers) {
     return !same_numbers && (zt_lens_has_aperture(job->lens) || zt_lens_moves(job->lens));
 }
 
-/* What rays saw is told by the numbers of things and lamps. */
-static bool same_lamps(const zt_outline *before, const zt_outline *now) {
-    bool same = before->lamp_count == now->lamp_count;
-    for (int32_t i = 0; same && i < now->lamp_count; i++)
-        same = zt_hash_equal(before->lamps[i].place, now->lamps[i].place);
-    return same;
-}
-
 /* Has those tiles that come from nowhere else come from a picture, where they can. */
 static zt_status ask(zt_frame *f, const zt_picture *picture, zt_tile_source source,
                      const zt_outline *now, zt_arena *arena) {
@@ -131,15 +129,24 @@ static zt_status ask(zt_frame *f, const zt_picture *picture, zt_tile_source sour
     zt_differences differences;
     ZT_TRY(zt_differences_find(&differences, &picture->outline, now, same_numbers, arena));
     if (differences.all || other_rays(f->job, same_numbers)) return ZT_OK;
-    if (f->at_edges) {
-        if (differences.shifted || !same_lamps(&picture->outline, now)) return ZT_OK;
-        differences.drawn_lamps |= differences.dimmed_lamps;
-    }
+    if (f->at_edges) differences.drawn_lamps |= differences.dimmed_lamps;
     zt_reuse *r = f->job->reuse;
     asking a = {r->from, r->still, picture, &differences, f->tile_count, source};
     zt_pool_run(f->pool, (f->tile_count + TILES - 1) / TILES, ask_task, &a);
     f->copies = true;
     return ZT_OK;
+}
+
+static void forget_sources(const zt_frame *f) {
+    memset(f->job->reuse->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
+    memset(f->job->reuse->still, 0, (size_t)f->tile_count);
+}
+
+static int64_t count_from(const zt_frame *f, zt_tile_source source) {
+    int64_t count = 0;
+    for (int i = 0; f->copies && i < f->tile_count; i++)
+        count += f->job->reuse->from[i] == (uint8_t)source;
+    return count;
 }
 
 static zt_status make_room(zt_reuse *r, const zt_frame *f) {
@@ -157,15 +164,14 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
         }
     }
     ZT_TRY(zt_picture_open(last, f->image->width, f->image->height));
-    memset(r->from, ZT_TILE_RENDERED, (size_t)f->tile_count);
-    memset(r->still, 0, (size_t)f->tile_count);
+    forget_sources(f);
     return ZT_OK;
 }
 
 /* The picture that was kept, where it is of the same rays. */
-static const zt_picture *kept_of(const zt_reuse *r, const zt_frame *f) {
-    const zt_picture *kept = r->kept;
-    bool fits = kept && kept->whole && !f->at_edges &&
+static zt_picture *kept_of(const zt_reuse *r, const zt_frame *f) {
+    zt_picture *kept = r->kept;
+    bool fits = kept && kept->whole && kept->at_edges == f->at_edges &&
                 zt_hash_equal(kept->view, f->job->view) && kept->width == f->image->width &&
                 kept->height == f->image->height;
     return fits ? kept : NULL;
@@ -192,15 +198,9 @@ static bool may_keep(const zt_frame *f) {
             !zt_image_channel(f->image, "error"));
 }
 
-/* The rounds of pixels in tiles that are rendered are forgotten; and beside them, where what is
- * strange may be known there now. */
-static zt_status open_rounds(zt_frame *f, zt_picture *p) {
-    if (!p->paths) p->paths = calloc((size_t)p->width * (size_t)p->height, sizeof *p->paths);
-    if (!p->paths) return ZT_EMEMORY;
-    f->paths = p->paths;
-    f->rounds = &p->rounds;
-    bool is_signed = zt_warp_is_signed(f->job->warp);
-    if (!f->copies) return zt_rounds_open(&p->rounds, p->width, p->height, is_signed);
+/* The rounds of pixels in tiles that are rendered, and beside them, where what is strange may
+ * be known there now. */
+static void forget_rounds(const zt_frame *f, zt_picture *p) {
     zt_rounds_reserve(&p->rounds, 0);
     for (int tile = 0; tile < f->tile_count; tile++) {
         if (f->job->reuse->from[tile] != ZT_TILE_RENDERED) continue;
@@ -210,7 +210,42 @@ static zt_status open_rounds(zt_frame *f, zt_picture *p) {
                  x++)
                 zt_rounds_forget(&p->rounds, x, y);
     }
+}
+
+/* What there is at edges goes on from the picture that tiles are copied from. */
+static zt_status open_edges(zt_frame *f, zt_picture *last, zt_picture *kept) {
+    if (kept) {
+        zt_rounds rounds = kept->rounds;
+        uint32_t *paths = kept->paths;
+        kept->rounds = last->rounds;
+        kept->paths = last->paths;
+        last->rounds = rounds;
+        last->paths = paths;
+    }
+    if (f->copies)
+        forget_rounds(f, last);
+    else
+        ZT_TRY(zt_picture_open_edges(last, zt_warp_is_signed(f->job->warp)));
+    f->paths = last->paths;
+    f->rounds = &last->rounds;
     return ZT_OK;
+}
+
+/* What goes from pixel to pixel must not do so from one picture to another: so where it may,
+ * *kept becomes NULL where more tiles can come from the last frame, which else is not tried. */
+static zt_status ask_both(zt_frame *f, zt_picture **kept, const zt_outline *now) {
+    zt_reuse *r = f->job->reuse;
+    if (f->tries) ZT_TRY(ask(f, &r->last, ZT_TILE_LAST, now, &r->spare));
+    if (!*kept) return ZT_OK;
+    const int64_t from_last = count_from(f, ZT_TILE_LAST);
+    if (!f->even) forget_sources(f);
+    ZT_TRY(ask(f, *kept, ZT_TILE_KEPT, now, &r->spare));
+    if (f->even) return ZT_OK;
+    f->tries = count_from(f, ZT_TILE_KEPT) < from_last;
+    if (!f->tries) return ZT_OK;
+    *kept = NULL;
+    forget_sources(f);
+    return ask(f, &r->last, ZT_TILE_LAST, now, &r->spare);
 }
 
 zt_status zt_reuse_begin(zt_frame *f) {
@@ -220,7 +255,7 @@ zt_status zt_reuse_begin(zt_frame *f) {
     if (!r) return ZT_OK;
     zt_outline now;
     zt_picture *last = &r->last;
-    const zt_picture *kept = kept_of(r, f);
+    zt_picture *kept = kept_of(r, f);
     bool alone = !f->even && r->alone > 0;
     if (alone) r->alone--;
     if (alone || !may_keep(f)) {
@@ -237,11 +272,9 @@ zt_status zt_reuse_begin(zt_frame *f) {
     zt_arena_reset(&r->spare);
     ZT_TRY(zt_outline_make(&now, f->job->scene, &r->spare));
     f->tries = asks_last && whole;
-    if (f->tries) ZT_TRY(ask(f, last, ZT_TILE_LAST, &now, &r->spare));
-    /* What goes from pixel to pixel must not do so from one picture to another. */
-    if (kept && (f->even || !f->copies)) ZT_TRY(ask(f, kept, ZT_TILE_KEPT, &now, &r->spare));
+    ZT_TRY(ask_both(f, &kept, &now));
     last->at_edges = f->at_edges;
-    if (f->at_edges) ZT_TRY(open_rounds(f, last));
+    if (f->at_edges) ZT_TRY(open_edges(f, last, kept));
     zt_arena before = last->arena;
     last->arena = r->spare;
     r->spare = before;
@@ -261,13 +294,6 @@ void zt_reuse_renounce(zt_frame *f) {
         zt_render_count *count = &f->work->threads[i].count;
         count->left_out = count->rays.primary_avoided = 0;
     }
-}
-
-static int64_t count_from(const zt_frame *f, zt_tile_source source) {
-    int64_t count = 0;
-    for (int i = 0; f->copies && i < f->tile_count; i++)
-        count += f->job->reuse->from[i] == (uint8_t)source;
-    return count;
 }
 
 void zt_reuse_end(zt_frame *f, bool done) {

@@ -25,9 +25,9 @@
  * At edges, pixels may join late, and nobody knows how far that goes. All decisions are made
  * again, in the whole picture; but what a pixel's first round came to, its second and so on,
  * follows from its tile's rays, and from what the middles of the pixels around saw: it is kept
- * (render/rounds.h), and looked up where neither is touched. What was seen is told by things'
- * and lamps' numbers, and of a lamp that is hidden only where it shines: so where numbers
- * change nothing is looked up, and a lamp that is dimmed touches all that faces it.
+ * (render/rounds.h), and looked up where neither is touched. What was seen is told by labels,
+ * which things and lamps keep, and of a lamp that is hidden only where it shines: so one that
+ * is dimmed touches all that faces it.
  *
  * In both cases footprints grow by all samples that a tile's pixels take, frame by frame, until
  * it is touched. Batches are of one tile each, and of what is not copied; not the same samples
@@ -79,6 +79,9 @@ typedef struct zt_picture {
 zt_status zt_picture_open(zt_picture *picture, int width, int height);
 void zt_picture_close(zt_picture *picture); /* leaves zeros */
 
+/* Has an open one hold what there is at edges as well, without any rounds; ZT_EMEMORY. */
+zt_status zt_picture_open_edges(zt_picture *picture, bool is_signed);
+
 /* Where a tile comes from. */
 typedef enum zt_tile_source {
     ZT_TILE_RENDERED,
@@ -88,10 +91,10 @@ typedef enum zt_tile_source {
 
 struct zt_reuse {
     bool tireless;
-    bool keeps;             /* somebody wants `last` to be whole after each frame */
-    zt_picture last;        /* the frame that was rendered last */
-    const zt_picture *kept; /* may be like the next one as well; NULL: none */
-    uint8_t *from;          /* a zt_tile_source for each tile */
+    bool keeps;          /* somebody wants `last` to be whole after each frame */
+    zt_picture last;     /* the frame that was rendered last */
+    zt_picture *kept;    /* may be like the next one as well; NULL: none. Used up by that */
+    uint8_t *from;       /* a zt_tile_source for each tile */
     uint8_t *still;      /* of tiles that are rendered: a bit for each part that need not be */
     uint64_t *stamps;    /* of the tiles of `last` (image/stamps.h): the frame each was new
                             in, where frames are counted from 1 */

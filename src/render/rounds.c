@@ -56,17 +56,23 @@ void zt_rounds_forget(zt_rounds *r, int column, int row) {
     *first = 0;
 }
 
+static uint32_t least_of(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
 /* Numbers that were taken are no longer there to take: the spare ones first, from the end. */
 static void settle(zt_rounds *r) {
-    uint32_t taken = atomic_exchange(&r->taken, 0), there = r->room - r->count;
-    uint32_t spare = taken < r->spare_count ? taken : r->spare_count, fresh = taken - spare;
+    uint32_t taken = atomic_exchange(&r->taken, 0), spare = least_of(taken, r->spare_count);
     r->spare_count -= spare;
-    r->count += fresh < there ? fresh : there;
+    r->count += least_of(taken - spare, r->room - r->count);
 }
 
-void zt_rounds_reserve(zt_rounds *r, int32_t count) {
+size_t zt_rounds_count(const zt_rounds *r) {
+    size_t there = r->room - r->count + r->spare_count, taken = atomic_load(&r->taken);
+    return r->count - 1 - r->spare_count + (taken < there ? taken : there);
+}
+
+void zt_rounds_reserve(zt_rounds *r, size_t count) {
     settle(r);
-    size_t wanted = (size_t)r->count + (size_t)count;
+    size_t wanted = (size_t)r->count + count;
     size_t most = bytes_max / (sizeof *r->rounds + sizeof *r->spare +
                                (r->negative ? sizeof *r->negative : 0));
     if (wanted <= r->room + (size_t)r->spare_count || r->room >= most) return;

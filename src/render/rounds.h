@@ -40,7 +40,10 @@ void zt_rounds_close(zt_rounds *rounds); /* leaves zeros */
 void zt_rounds_forget(zt_rounds *rounds, int column, int row);
 
 /* Before each round over the picture: so many may be kept in it, as long as there is room. */
-void zt_rounds_reserve(zt_rounds *rounds, int32_t count);
+void zt_rounds_reserve(zt_rounds *rounds, size_t count);
+
+/* How many are kept, of all pixels. */
+size_t zt_rounds_count(const zt_rounds *rounds);
 
 /* The slot takes its next round from those that are kept; false where that one is not. From any
  * thread, as is the next. */

@@ -181,7 +181,7 @@ static void sample_group(const zt_round_job *j, zt_render_thread *own, const int
     zt_samples_key(&own->places, f->job, own->column, own->row, count);
     memset(own->sums.positive, 0, sizeof own->sums.positive);
     if (j->is_signed) memset(own->sums.negative, 0, sizeof own->sums.negative);
-    own->rays.wants_path = f->at_edges;
+    own->rays.labels = f->at_edges ? &f->labels : NULL;
     own->rays.wants_cover = f->job->transparent;
     zt_footprint footprint = {0};
     if (f->keeps) zt_reuse_watch(&own->rays, &footprint, f);

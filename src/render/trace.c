@@ -33,7 +33,7 @@ static void turn_light(zt_radiance *light, const zt_rays *rays, int count, int n
     turn(light->r, now, count);
     turn(light->g, now, count);
     turn(light->b, now, count);
-    if (rays->wants_path) turn(light->path, now, count);
+    if (rays->labels) turn(light->path, now, count);
     if (rays->wants_cover) turn(light->a, now, count);
 }
 

@@ -20,9 +20,9 @@
 #include "render/keepsake.h"
 
 /* How much longer than one core takes to make and find its keepsake a frame must take all of
- * them; and what that is: so much for each, and for each of its pixels, in seconds. A quarter
+ * them; and what that is: so much for each, and for each of its bytes, in seconds. A quarter
  * of it is finding. */
-static const double worth = 3, file_s = 2e-4, pixel_s = 22e-9;
+static const double worth = 3, file_s = 2e-4, byte_s = 1.6e-9;
 /* How long it may wait for the disk in all: so many seconds, and a share of the time for
  * rendering. */
 static const double grace_s = 1, patience = 0.03;
@@ -44,7 +44,8 @@ struct zt_keepsakes {
     uint64_t most, size; /* bytes that there may be, and are */
     entry *entries;      /* by rising frame */
     size_t count, room;
-    double expected_s;           /* the next frame takes, by the last one */
+    double expected_s;           /* the next frame takes, by the last one, */
+    double expected_bytes;       /* and its keepsake, likewise */
     double rendered_s, waited_s; /* in all; the latter for the errand */
     zt_picture picture;          /* what is copied from */
     bool offered;                /* for the frame that is being rendered */
@@ -246,11 +247,8 @@ static void write_made(void *user) {
 /* ---- before and after a frame ---------------------------------------------------------------
  */
 
-/* How long a frame must take for one. */
-static double least_s(const zt_keepsakes *k) {
-    const zt_output_format *f = &k->renderer->format;
-    return worth * (file_s + pixel_s * f->width * f->height);
-}
+/* How long a frame must take for one of so many bytes. */
+static double least_s(double bytes) { return worth * (file_s + byte_s * bytes); }
 
 /* Grows memory whose contents mean nothing. */
 static bool grow(unsigned char **bytes, size_t *room, size_t size) {
@@ -279,14 +277,16 @@ void zt_keepsakes_offer(zt_keepsakes *k, const zt_render_job *job, int64_t frame
     k->offered = e && zt_hash_equal(e->view, job->view) && read_keepsake(k, e);
     if (e && !k->offered) drop(k, e);
     reuse->kept = k->offered ? &k->picture : NULL;
-    reuse->keeps =
-        !k->told && k->expected_s >= least_s(k) && !zt_reuse_hindrance(job); /* of use */
+    reuse->keeps = !k->told && k->expected_s >= least_s(k->expected_bytes) &&
+                   !zt_reuse_hindrance(job); /* of use */
 }
 
-/* Hands the picture over to the errand, if there is room for it. */
+/* Hands the picture over to the errand, if that is worth it and there is room for it. */
 static zt_status make(zt_keepsakes *k, const zt_picture *picture, zt_keepsake_head *head) {
     if (!grow(&k->made, &k->made_room, zt_keepsake_room(picture))) return ZT_EMEMORY;
     zt_keepsake_write(k->made, head, picture, zt_arithmetic);
+    k->expected_bytes = (double)head->size;
+    if (head->render_s < least_s(k->expected_bytes)) return ZT_OK;
     if (!make_room(k, head->frame, head->size, head->render_s)) return ZT_OK;
     ZT_TRY(
         remember(k, &(entry){head->frame, head->size, head->render_s, head->view, head->key}));
@@ -329,8 +329,8 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     k->expected_s = render_s;
     k->rendered_s += cost->own_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
-    if (fresh || !r->reuse->keeps || !last->whole || last->at_edges) return;
-    if (render_s < least_s(k)) return;
+    if (fresh || !r->reuse->keeps || !last->whole || render_s < least_s(k->expected_bytes))
+        return;
     if (atomic_load(&k->making) && k->waited_s > grace_s + patience * k->rendered_s) return;
     settle(k);
     if (k->failure) return;
@@ -361,7 +361,7 @@ zt_status zt_keepsakes_open(zt_keepsakes **out, const zt_keepsakes_order *order,
     k->frames = order->frames;
     k->shared = order->part_count > 0;
     k->most = (uint64_t)(order->bytes_max / shares);
-    k->expected_s = INFINITY;
+    k->expected_s = INFINITY; /* nothing is known yet */
     zt_status status = begin(k, order);
     if (status == ZT_OK && order->bytes_max > 0)
         *out = k;

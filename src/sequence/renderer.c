@@ -118,14 +118,23 @@ void zt_renderer_close(zt_renderer **slot) {
 
 zt_output_format zt_renderer_format(const zt_renderer *r) { return r->format; }
 
-/* What decides a picture's rays. */
-static zt_hash view_of(const zt_renderer *r, const zt_exposure *exposure) {
+/* What decides a picture's rays. At edges, where they go on is decided anew in each one. */
+static zt_hash view_of(const zt_renderer *r, const zt_taking *t) {
     const zt_sampling *s = &r->sampling;
-    const zt_hash cameras = zt_shutter_view(exposure);
-    const double numbers[] = {r->format.width, r->format.height, r->animation->film.transparent,
-                              s->min,          s->max,           s->error,
-                              s->mean_max,     s->edges,         s->filter,
-                              s->filter_width, s->seed,          s->seed_fixed};
+    const bool at_edges = zt_render_is_at_edges(&t->job);
+    const zt_hash cameras = zt_shutter_view(&t->exposure);
+    const double numbers[] = {r->format.width,
+                              r->format.height,
+                              r->animation->film.transparent,
+                              s->min,
+                              s->max,
+                              at_edges ? 0 : s->error,
+                              at_edges ? 0 : s->mean_max,
+                              s->edges,
+                              s->filter,
+                              s->filter_width,
+                              s->seed,
+                              s->seed_fixed};
     const zt_hash parts[] = {cameras, zt_hash_bytes(numbers, sizeof numbers)};
     return zt_hash_bytes(parts, sizeof parts);
 }
@@ -164,7 +173,7 @@ zt_status zt_renderer_prepare(zt_taking *t, zt_renderer *r, int64_t frame) {
         ZT_TRY(zt_thin_prepare(&t->job.thin, &t->exposure, r->format.width, r->format.height,
                                &r->frame));
     zt_shutter_keys(&t->job.place_key, &t->job.frame_key, &t->exposure, &r->sampling);
-    t->job.view = view_of(r, &t->exposure);
+    t->job.view = view_of(r, t);
     r->cost =
         (zt_frame_cost){.freeze_s = frozen_s - begun_s, .prepare_s = zt_clock_s() - frozen_s};
     return ZT_OK;

@@ -31,14 +31,15 @@ static void begin_paths(zt_work *w) {
 
 /* Lengthens the paths by the points: what each lies on, and what of that and of its light has
  * edges that can be seen. */
-static void deliver_paths(zt_radiance *restrict light, zt_work *restrict w) {
+static void deliver_paths(zt_radiance *restrict light, zt_work *restrict w,
+                          const uint32_t *restrict labels) {
     const zt_points *restrict p = &w->points;
     uint32_t *restrict path = w->hidden;
     int padded = zt_batch_padded(p->count);
     WIDE_LOOP for (int k = 0; k < padded; k++) {
         int32_t source = w->from.source[k], inside = source >= 0 ? source & 1 : 0;
-        uint32_t what = (uint32_t)(16 * p->primitive[k] + 2 * p->face[k] + inside) << 1 |
-                        (uint32_t)p->cell[k];
+        uint32_t part = (uint32_t)(2 * p->face[k] + inside) << 1 | (uint32_t)p->cell[k];
+        uint32_t what = labels[p->primitive[k]] ^ part;
         uint32_t whole = zt_sample_mix(what + 1) ^ path[k];
         path[k] = zt_sample_mix(light->path[p->moved ? p->pixel[k] : k] + whole);
     }
@@ -164,7 +165,7 @@ static inline __attribute__((always_inline)) bool trace_any(zt_radiance *light,
     memset(light->g, 0, sizeof light->g);
     memset(light->b, 0, sizeof light->b);
     zt_footprint *footprint = plain ? NULL : given->footprint;
-    const bool wants_path = !plain && given->wants_path;
+    const bool wants_path = !plain && given->labels;
     const bool everything = !plain && tracer->everything;
     const bool whole = wants_path || everything;
     if (wants_path) memset(light->path, 0, sizeof light->path);
@@ -191,7 +192,7 @@ static inline __attribute__((always_inline)) bool trace_any(zt_radiance *light,
         if (footprint) zt_tread_points(footprint, depth, &w->points, tracer, given->outline);
         int traced = light_points(w, &light->counts, tracer, given, depth);
         deliver(light, w);
-        if (wants_path) deliver_paths(light, w);
+        if (wants_path) deliver_paths(light, w, given->labels->things);
         int count = w->rays.count;
         if (depth < tracer->reflection_depth)
             go_on(w, light, tracer, depth >= tracer->faint_depth && !whole);

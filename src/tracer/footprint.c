@@ -95,10 +95,8 @@ static zt_status add_things(zt_differences *d, const zt_outline *before, const z
                     .now = list_of(&is->shape, sizeof *is, now->thing_count)};
     int32_t i, k;
     ZT_TRY(zt_pairing_begin(&p, arena));
-    while (zt_pairing_next(&i, &k, &p)) {
+    while (zt_pairing_next(&i, &k, &p))
         add_thing(d, i < 0 ? NULL : &was[i], k < 0 ? NULL : &is[k], same_numbers);
-        d->shifted |= i != k;
-    }
     return ZT_OK;
 }
 

@@ -99,6 +99,15 @@ typedef struct zt_outline {
 /* ZT_EMEMORY. */
 zt_status zt_outline_make(zt_outline *outline, const zt_ready *ready, zt_arena *arena);
 
+/* What tells things and lamps of a scene apart, by number: it follows from what of them decides
+ * where rays meet them, so that it stays the same whatever comes before them. */
+typedef struct zt_labels {
+    uint32_t *things, *lamps;
+} zt_labels;
+
+/* ZT_EMEMORY. */
+zt_status zt_labels_make(zt_labels *labels, const zt_ready *ready, zt_arena *arena);
+
 /* ---- between frames -------------------------------------------------------------------------
  */
 
@@ -120,7 +129,6 @@ typedef struct zt_sides {
 typedef struct zt_differences {
     bool all;        /* nothing can be said of anything */
     bool light;      /* what light there is at any point */
-    bool shifted;    /* things have other numbers */
     bool order;      /* hierarchies are of other things */
     uint64_t things; /* that went, moved, or look otherwise */
     uint64_t drawn_lamps, dimmed_lamps;

@@ -28,6 +28,8 @@ prepare_ready zt_prepare_ready_single, zt_prepare_ready_double;
 
 typedef zt_status outline(zt_outline *outline, const zt_tracer *tracer, zt_arena *arena);
 outline zt_outline_single, zt_outline_double;
+typedef zt_status labels(zt_labels *labels, const zt_tracer *tracer, zt_arena *arena);
+labels zt_labels_single, zt_labels_double;
 
 static const zt_kernel *select_kernel(zt_precision precision) {
     const char *wanted = getenv("ZOETROPE_ISA");
@@ -85,6 +87,11 @@ zt_status zt_tracer_prepare(zt_ready *ready, const zt_exposure *exposure,
 zt_status zt_outline_make(zt_outline *out, const zt_ready *ready, zt_arena *arena) {
     bool single = ready->precision == ZT_PRECISION_SINGLE;
     return (single ? zt_outline_single : zt_outline_double)(out, ready->tracer, arena);
+}
+
+zt_status zt_labels_make(zt_labels *out, const zt_ready *ready, zt_arena *arena) {
+    bool single = ready->precision == ZT_PRECISION_SINGLE;
+    return (single ? zt_labels_single : zt_labels_double)(out, ready->tracer, arena);
 }
 
 size_t zt_kernel_work_size(void) {

@@ -34,8 +34,10 @@ typedef struct zt_rays {
     alignas(64) uint32_t key[ZT_BATCH];
     alignas(64) uint32_t sample[ZT_BATCH];
     int count;
-    /* Which of zt_radiance are asked for besides the light. */
-    bool wants_path, wants_cover;
+    /* What is asked for of zt_radiance besides the light: paths, which tell things and lamps by
+     * these numbers, or NULL; and cover. */
+    const struct zt_labels *labels;
+    bool wants_cover;
     /* Grows by what the rays touch of this outline, which is the tracer's; NULL: nobody asks.
      */
     struct zt_footprint *footprint;

@@ -121,11 +121,10 @@ static void add_lamp(zt_work *restrict w) {
 }
 
 /* Takes note of where lamp number `index` is hidden. */
-static void note_hidden(zt_work *restrict w, int32_t index) {
-    const uint32_t number = zt_lamp_mark(index);
+static void note_hidden(zt_work *restrict w, uint32_t label) {
     int padded = zt_batch_padded(w->points.count);
-    WIDE_LOOP for (int k = 0; k < padded; k++) w->hidden[k] ^=
-        w->shadow.hit[k] >= 0 ? number : 0;
+    WIDE_LOOP for (int k = 0; k < padded; k++) w->hidden[k] +=
+        w->shadow.hit[k] >= 0 ? label : 0;
 }
 
 /* The sums of the ambient lights at the rays' times. */
@@ -170,7 +169,7 @@ static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt
     if (wanted > 0) {
         ZT_KERNEL_NAME(zt_occlude)(&w->shadow, &bundle, tracer);
         add_lamp(w);
-        if (given->wants_path) note_hidden(w, index);
+        if (given->labels) note_hidden(w, given->labels->lamps[index]);
     }
     if (given->footprint)
         zt_tread_lamp(given->footprint, lamp, given->outline->lamps[index].place, &w->points,
@@ -182,12 +181,12 @@ static int light_by(zt_work *w, const zt_tracer *tracer, int32_t index, const zt
 static zt_reach_points bound_points(const zt_work *w, const zt_rays *given) {
     const zt_points *p = &w->points;
     zt_reach_points bounds = {.places = p->places,
-                              .wants_path = given->wants_path,
+                              .labels = given->labels,
                               .footprint = given->footprint,
                               .outline = given->outline};
     bounds.normals =
         p->flat ? (zt_box){p->normal, p->normal} : zt_range3(p->nx, p->ny, p->nz, p->count);
-    if (given->wants_path)
+    if (given->labels)
         bounds.least_color = zt_range3(p->color_r, p->color_g, p->color_b, p->count).low;
     return bounds;
 }
@@ -202,8 +201,8 @@ static int light_reached(zt_work *w, const zt_tracer *tracer, const zt_rays *giv
         int count =
             ZT_KERNEL_NAME(zt_reach_list)(w->list, &hidden, &w->reach, &bounds, tracer, first);
         for (int i = 0; i < count; i++) traced += light_by(w, tracer, w->list[i], given, depth);
-        if (given->wants_path && hidden)
-            for (int k = 0; k < w->points.count; k++) w->hidden[k] ^= hidden;
+        if (given->labels && hidden)
+            for (int k = 0; k < w->points.count; k++) w->hidden[k] += hidden;
     }
     return traced;
 }

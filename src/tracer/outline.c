@@ -231,3 +231,15 @@ zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
     *outline = o;
     return ZT_OK;
 }
+
+zt_status ZT_REAL_NAME(zt_labels)(zt_labels *labels, const zt_tracer *tracer, zt_arena *arena) {
+    const zt_hash times = times_of(tracer);
+    labels->things = ZT_PUSH(arena, uint32_t, (size_t)tracer->primitive_count);
+    labels->lamps = ZT_PUSH(arena, uint32_t, (size_t)tracer->lamp_count);
+    if (!labels->things || !labels->lamps) return ZT_EMEMORY;
+    for (int32_t i = 0; i < tracer->primitive_count; i++)
+        labels->things[i] = (uint32_t)shape_of(tracer, i).low;
+    for (int32_t i = 0; i < tracer->lamp_count; i++)
+        labels->lamps[i] = (uint32_t)lamp_of(tracer, i, times).place.low;
+    return ZT_OK;
+}

@@ -20,8 +20,9 @@ static inline zt_bvh_box zt_outwards(const zt_box *b) {
         {zt_upwards(b->high.x), zt_upwards(b->high.y), zt_upwards(b->high.z)}};
 }
 
-/* What zt_outline_make() does. */
+/* What zt_outline_make() and zt_labels_make() do. */
 zt_status ZT_REAL_NAME(zt_outline)(zt_outline *outline, const zt_tracer *tracer,
                                    zt_arena *arena);
+zt_status ZT_REAL_NAME(zt_labels)(zt_labels *labels, const zt_tracer *tracer, zt_arena *arena);
 
 #endif

@@ -61,7 +61,7 @@ static void take_faced(lamps *restrict to, const zt_reach_points *p, const zt_tr
     const int32_t *restrict shadows = reach->shadows + first;
     const zt_box at = p->places, n = p->normals;
     const real size = zt_box_size(&at);
-    const int32_t all = !p->wants_path;
+    const int32_t all = !p->labels;
     WIDE_LOOP for (int i = 0; i < zt_batch_padded(count); i++) {
         real x0 = lx[i] - at.high.x, x1 = hx[i] - at.low.x;
         real y0 = ly[i] - at.high.y, y1 = hy[i] - at.low.y;
@@ -138,7 +138,7 @@ static void keep_open(lamps *l, uint32_t *hidden, const zt_reach_points *points)
             move_lamp(l, kept++, i);
             continue;
         }
-        *hidden ^= zt_lamp_mark(l->number[i]);
+        if (points->labels) *hidden += points->labels->lamps[l->number[i]];
         if (points->footprint)
             points->footprint->faced |=
                 zt_footprint_bit(points->outline->lamps[l->number[i]].place);
@@ -338,7 +338,7 @@ int ZT_KERNEL_NAME(zt_reach_list)(int32_t *list, uint32_t *hidden, zt_reach_memo
     }
     take_faced(&l, points, tracer, first, count);
     keep_shining(&l, points, tracer);
-    for (int i = 0; points->wants_path && i < l.count; i++)
+    for (int i = 0; points->labels && i < l.count; i++)
         l.blockable[i] &= is_lit(&tracer->lamps[l.number[i]], points, l.size[i]);
     block_all(&l, hidden, memory, points, tracer);
     for (int i = 0; i < l.count; i++) list[i] = l.number[i];

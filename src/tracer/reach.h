@@ -11,9 +11,6 @@
 #include "tracer/sampler.h"
 #include "tracer/tracer.h"
 
-/* What stands for a lamp in the path of a point from where it is hidden. */
-static inline uint32_t zt_lamp_mark(int32_t lamp) { return zt_sample_mix((uint32_t)lamp + 1); }
-
 /* What blocked lamps from a thread's last batches: likely it will again. Any contents will do;
  * they decide how long it takes, and nothing else. */
 typedef struct zt_reach_memory {
@@ -24,15 +21,15 @@ typedef struct zt_reach_memory {
 /* Bounds of a batch's points, with all that decides which lamps reach them. */
 typedef struct zt_reach_points {
     zt_box places, normals;
-    real3 least_color; /* of all points */
-    bool wants_path;
-    zt_footprint *footprint; /* grows by the lamps that are left out; may be NULL */
+    real3 least_color;              /* of all points */
+    const struct zt_labels *labels; /* as in zt_rays */
+    zt_footprint *footprint;        /* grows by the lamps that are left out; may be NULL */
     const zt_outline *outline;
 } zt_reach_points;
 
 /* Of lamps first … first + ZT_BATCH - 1, in order, those that may shine on the points: their
- * numbers to `list`; returns how many there are. To `hidden`, the sum by exclusive or of
- * zt_lamp_mark of those that something hides from all points, which face them. */
+ * numbers to `list`; returns how many there are. To `hidden`, the sum of the labels of those
+ * that something hides from all points, which face them; 0 without labels. */
 int ZT_KERNEL_NAME(zt_reach_list)(int32_t *list, uint32_t *hidden, zt_reach_memory *memory,
                                   const zt_reach_points *points, const zt_tracer *tracer,
                                   int32_t first);

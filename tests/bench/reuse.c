@@ -247,8 +247,10 @@ static void measure_edits(const char *still) {
     measure_edit("edit, camera moves, 1 sample", moving, "1");
     measure_edit("edit, camera moves, 4 samples", moving, "4");
     measure_edit("edit, camera moves, 16 samples", moving, "16");
+    measure_edit("edit, camera moves, edges", moving, "edges");
     measure_edit("edit, camera stands, 4 samples", still, "4");
     measure_edit("edit, camera stands, 16 samples", still, "16");
+    measure_edit("edit, camera stands, edges", still, "edges");
 }
 
 /* ---- held frames ----------------------------------------------------------------------------
