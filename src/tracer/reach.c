@@ -303,26 +303,38 @@ static bool any_gone(const lamps *l) {
     return !all;
 }
 
-/* Those that blocked something before, and a few others each time. */
+/* Has a blocker clear away what it hides; it is useful where that is anything. */
+static void ask(lamps *l, uint32_t *hidden, zt_reach_memory *memory, uint32_t blocker,
+                const zt_reach_points *points, const zt_tracer *tracer) {
+    const zt_primitive *p = &tracer->primitives[tracer->reach->blockers[blocker]];
+    if (!block(l, p, points) || !any_gone(l)) return;
+    keep_open(l, hidden, points);
+    memory->useful[memory->useful_count++] = (uint8_t)blocker;
+}
+
+/* Those that blocked something before, from the last to the first, so that one that hides only
+ * what another one hides as well comes after that and is forgotten; and a few others each time.
+ */
 static void block_all(lamps *l, uint32_t *hidden, zt_reach_memory *memory,
                       const zt_reach_points *points, const zt_tracer *tracer) {
     enum { OTHERS = 4 };
-    const zt_reach *reach = tracer->reach;
-    const int32_t count = reach->blocker_count;
-    uint32_t useful = memory->useful, still = 0, next = memory->next;
-    int others = 0;
-    for (int32_t round = 0; round < 2 * count && l->count > 0; round++) {
-        bool first = round < count;
-        int32_t b = first ? round : (int32_t)((next + (uint32_t)round) % (uint32_t)count);
-        if ((useful >> b & 1) != first) continue;
-        if (!first && others++ == OTHERS) break;
-        if (!first) memory->next = (uint32_t)b + 1;
-        if (!block(l, &tracer->primitives[reach->blockers[b]], points) || !any_gone(l))
-            continue;
-        keep_open(l, hidden, points);
-        still |= 1u << b;
+    const zt_reach_memory before = *memory;
+    const uint32_t count = (uint32_t)tracer->reach->blocker_count;
+    uint32_t asked = 0, others = 0;
+    memory->useful_count = 0;
+    for (uint32_t i = before.useful_count % (ZT_BLOCKERS_MAX + 1); i-- > 0 && l->count > 0;) {
+        const uint32_t b = before.useful[i];
+        if (b >= count || asked >> b & 1) continue;
+        asked |= 1u << b;
+        ask(l, hidden, memory, b, points, tracer);
     }
-    memory->useful = still;
+    for (uint32_t i = 0; i < count && others < OTHERS && l->count > 0; i++) {
+        const uint32_t b = (before.next % count + i) % count;
+        if (asked >> b & 1) continue;
+        others++;
+        memory->next = b + 1;
+        ask(l, hidden, memory, b, points, tracer);
+    }
 }
 
 int ZT_KERNEL_NAME(zt_reach_list)(int32_t *list, uint32_t *hidden, zt_reach_memory *memory,

@@ -14,8 +14,9 @@
 /* What blocked lamps from a thread's last batches: likely it will again. Any contents will do;
  * they decide how long it takes, and nothing else. */
 typedef struct zt_reach_memory {
-    uint32_t useful; /* bits of blockers */
-    uint32_t next;   /* the one to try next of the others */
+    uint8_t useful[ZT_BLOCKERS_MAX]; /* blockers, in the order in which they were asked */
+    uint32_t useful_count;
+    uint32_t next; /* the one to try next of the others */
 } zt_reach_memory;
 
 /* Bounds of a batch's points, with all that decides which lamps reach them. */
