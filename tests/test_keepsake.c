@@ -14,6 +14,7 @@
 #include "random_scenes.h"
 #include "reel.h"
 #include "render/keepsake.h"
+#include "render/reuse.h"
 
 static const char arithmetic[] = "of tests";
 
@@ -354,7 +355,8 @@ static void all_of_it_is_kept(void **state) {
     make_keepsake(&k);
     take_out(&picture, &k);
     zt_outline *o = &picture.outline;
-    const size_t count = (size_t)zt_tile_count(picture.width, picture.height) * ZT_REUSE_PARTS;
+    const size_t count =
+        (size_t)zt_tile_count(picture.width, picture.height) * ZT_PICTURE_PARTS;
     for (int n = 0; n < 8; n++) {
         for (size_t i = 0; i < count; i++) {
             zt_footprint *f = &picture.footprints[i];
@@ -429,7 +431,7 @@ static void ask_all(const zt_picture *picture, const zt_outline *now) {
     zt_differences d;
     int touched = 0;
     assert_int_equal(zt_differences_find(&d, &picture->outline, now, false, &arena), ZT_OK);
-    int parts = ZT_REUSE_PARTS * zt_tile_count(picture->width, picture->height);
+    int parts = ZT_PICTURE_PARTS * zt_tile_count(picture->width, picture->height);
     for (int i = 0; i < parts; i++)
         touched += zt_footprint_touched(&picture->footprints[i], &d);
     assert_in_range(touched, 0, parts);

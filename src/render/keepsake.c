@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "render/work.h"
 
 static_assert(sizeof(zt_keepsake_head) == 136, "there are no bytes between fields");
 
@@ -11,7 +12,7 @@ enum { CHECKED = offsetof(zt_keepsake_head, checksum) + sizeof(zt_hash) };
 
 /* Changes whenever bytes, or what footprints and outlines say, become others. */
 static zt_hash version_of(const char *arithmetic) {
-    const uint64_t numbers[] = {4,        ZT_REUSE_PARTS,       ZT_FOOTPRINT_STEPS,
+    const uint64_t numbers[] = {4,        ZT_PICTURE_PARTS,     ZT_FOOTPRINT_STEPS,
                                 ZT_BATCH, sizeof(zt_footprint), sizeof(zt_outline)};
     const zt_hash parts[] = {zt_hash_bytes(numbers, sizeof numbers),
                              zt_hash_bytes(arithmetic, strlen(arithmetic))};
@@ -101,7 +102,7 @@ static void pass_outline(stream *s, zt_outline *o) {
 static size_t pixel_count(const zt_picture *p) { return (size_t)p->width * (size_t)p->height; }
 
 static size_t footprint_count(const zt_picture *p) {
-    return (size_t)zt_tile_count(p->width, p->height) * ZT_REUSE_PARTS;
+    return (size_t)zt_tile_count(p->width, p->height) * ZT_PICTURE_PARTS;
 }
 
 /* Those of pictures that cover all without their A, which is 1. */

@@ -8,7 +8,7 @@
 #ifndef ZT_RENDER_KEEPSAKE_H
 #define ZT_RENDER_KEEPSAKE_H
 
-#include "render/reuse.h"
+#include "render/picture.h"
 
 /* Without bytes between its fields. */
 typedef struct zt_keepsake_head {

@@ -168,7 +168,7 @@ static bool render_parts(bool *rendered, zt_frame *f, zt_render_thread *own, til
     int64_t avoided = 0;
     bool doubtful = false;
     zt_reuse_copy_parts(f, index, area.x, area.y);
-    for (int part = 0; part < ZT_REUSE_PARTS; part++) {
+    for (int part = 0; part < ZT_PICTURE_PARTS; part++) {
         if (!(r->still[index] >> part & 1)) {
             footprints[part] = (zt_footprint){0};
             int first = part * ZT_REUSE_PIXELS;
@@ -233,7 +233,7 @@ static bool render_tile(zt_frame *f, int index, int worker) {
         return rendered;
     if (f->keeps)
         memset(zt_reuse_footprint(f->job->reuse, index, 0), 0,
-               ZT_REUSE_PARTS * sizeof(zt_footprint));
+               ZT_PICTURE_PARTS * sizeof(zt_footprint));
     if (f->image->stamps) f->image->stamps[index] = f->serial;
     if (!f->even && !f->at_edges) { /* its samples are taken later */
         zt_reuse_stamp(f, index);

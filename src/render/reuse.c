@@ -7,10 +7,9 @@
 #endif
 
 #include "base/diag.h"
-#include "base/pages.h"
 
 /* One tile in so many must be copied for it to be worth it; twice in a row it may not be. Then
- * it rests, each time twice as long. */
+ * it rests, each time four times as long. */
 enum { WORTH = 8, FRUITLESS_MAX = 2, REST_MAX = 6 };
 
 zt_status zt_reuse_open(zt_reuse **out, bool tireless) {
@@ -19,36 +18,6 @@ zt_status zt_reuse_open(zt_reuse **out, bool tireless) {
     (*out)->tireless = tireless;
     for (int i = 0; i < ZT_REUSE_LOCKS; i++) atomic_flag_clear(&(*out)->locks[i]);
     return ZT_OK;
-}
-
-void zt_picture_close(zt_picture *p) {
-    free(p->pixels);
-    free(p->footprints);
-    free(p->paths);
-    zt_rounds_close(&p->rounds);
-    zt_arena_free(&p->arena);
-    *p = (zt_picture){0};
-}
-
-zt_status zt_picture_open(zt_picture *p, int width, int height) {
-    if (p->width == width && p->height == height) return ZT_OK;
-    zt_picture_close(p);
-    p->pixels = zt_pages_alloc(4 * (size_t)width * (size_t)height * sizeof *p->pixels);
-    p->footprints =
-        calloc((size_t)zt_tile_count(width, height) * ZT_REUSE_PARTS, sizeof *p->footprints);
-    if (!p->pixels || !p->footprints) {
-        zt_picture_close(p);
-        return ZT_EMEMORY;
-    }
-    p->width = width;
-    p->height = height;
-    return ZT_OK;
-}
-
-zt_status zt_picture_open_edges(zt_picture *p, bool is_signed) {
-    if (!p->paths) p->paths = calloc((size_t)p->width * (size_t)p->height, sizeof *p->paths);
-    if (!p->paths) return ZT_EMEMORY;
-    return zt_rounds_open(&p->rounds, p->width, p->height, is_signed);
 }
 
 void zt_reuse_close(zt_reuse **slot) {
@@ -95,10 +64,10 @@ enum { TILES = 64 }; /* of a task */
 /* Which parts of a tile are not touched. Of most tiles none is, which is asked at once. */
 static unsigned still_parts(const zt_footprint *parts, const zt_differences *differences) {
     zt_footprint all = parts[0];
-    for (int i = 1; i < ZT_REUSE_PARTS; i++) zt_footprint_join(&all, &parts[i]);
+    for (int i = 1; i < ZT_PICTURE_PARTS; i++) zt_footprint_join(&all, &parts[i]);
     if (!zt_footprint_touched(&all, differences)) return ZT_REUSE_ALL;
     unsigned still = 0;
-    for (int i = 0; i < ZT_REUSE_PARTS; i++)
+    for (int i = 0; i < ZT_PICTURE_PARTS; i++)
         still |= (unsigned)!zt_footprint_touched(&parts[i], differences) << i;
     return still;
 }
@@ -108,11 +77,11 @@ static void ask_task(void *user, int task, int worker) {
     const asking *a = user;
     int end = min_int((task + 1) * TILES, a->tile_count);
     for (int tile = task * TILES; tile < end; tile++) {
-        const zt_footprint *parts = &a->picture->footprints[tile * ZT_REUSE_PARTS];
+        const zt_footprint *parts = &a->picture->footprints[tile * ZT_PICTURE_PARTS];
         if (a->from[tile] != ZT_TILE_RENDERED) continue;
         unsigned still = still_parts(parts, a->differences);
         if (still == ZT_REUSE_ALL) a->from[tile] = (uint8_t)a->source;
-        bool by_parts = a->source == ZT_TILE_LAST && parts[ZT_REUSE_PARTS - 1].steps->there;
+        bool by_parts = a->source == ZT_TILE_LAST && parts[ZT_PICTURE_PARTS - 1].steps->there;
         if (by_parts) a->still[tile] = (uint8_t)still;
     }
 }
@@ -356,8 +325,8 @@ void zt_reuse_copy(zt_frame *f, int tile, int left, int top, int width, int heig
     if (r->from[tile] == ZT_TILE_KEPT) {
         r->stamps[tile] = f->serial;
         from = r->kept;
-        memcpy(zt_reuse_footprint(r, tile, 0), &from->footprints[tile * ZT_REUSE_PARTS],
-               ZT_REUSE_PARTS * sizeof *from->footprints);
+        memcpy(zt_reuse_footprint(r, tile, 0), &from->footprints[tile * ZT_PICTURE_PARTS],
+               ZT_PICTURE_PARTS * sizeof *from->footprints);
     }
     if (stamps && stamps[tile] == r->stamps[tile]) return;
     if (stamps) stamps[tile] = r->stamps[tile];

@@ -46,41 +46,16 @@
 
 #include <stdatomic.h>
 
-#include "render/rounds.h"
+#include "render/picture.h"
 #include "render/work.h"
-#include "tracer/footprint.h"
 
-/* What of a tile has a footprint of its own: a quarter, or all of it, which has the first
- * quarter's. */
+/* Parts of a tile: quarters. */
 enum {
-    ZT_REUSE_PARTS = 4,
-    ZT_REUSE_ALL = (1 << ZT_REUSE_PARTS) - 1,
+    ZT_REUSE_ALL = (1 << ZT_PICTURE_PARTS) - 1,
     ZT_REUSE_SIDE = TILE_SIDE / 2,
-    ZT_REUSE_PIXELS = ZT_BATCH / ZT_REUSE_PARTS,
+    ZT_REUSE_PIXELS = ZT_BATCH / ZT_PICTURE_PARTS,
     ZT_REUSE_LOCKS = 64
 };
-
-/* A frame as it was rendered, with what its rays touched: all that tiles are copied from. */
-typedef struct zt_picture {
-    zt_hash view;       /* its rays; */
-    uint64_t frame_key; /* and its random numbers */
-    bool whole;         /* the pixels and footprints of all tiles are there, and belong to it */
-    int width, height;
-    bool at_edges;            /* pixels are those of the first samples, in the middles; */
-    float *pixels;            /* R G B A */
-    uint32_t *paths;          /* and there are what these saw, */
-    zt_rounds rounds;         /* and what the further ones came to; else NULL and zeros */
-    zt_footprint *footprints; /* ZT_REUSE_PARTS for each tile */
-    zt_outline outline;
-    zt_arena arena; /* the outline's */
-} zt_picture;
-
-/* Has it hold pictures of a size; nothing of the one before stays where that is another one. */
-zt_status zt_picture_open(zt_picture *picture, int width, int height);
-void zt_picture_close(zt_picture *picture); /* leaves zeros */
-
-/* Has an open one hold what there is at edges as well, without any rounds; ZT_EMEMORY. */
-zt_status zt_picture_open_edges(zt_picture *picture, bool is_signed);
 
 /* Where a tile comes from. */
 typedef enum zt_tile_source {
@@ -138,7 +113,7 @@ void zt_reuse_watch(zt_rays *rays, zt_footprint *footprint, const zt_frame *fram
 void zt_reuse_note(zt_frame *frame, const zt_footprint *footprint, int column, int row);
 
 static inline zt_footprint *zt_reuse_footprint(const zt_reuse *r, int tile, int first) {
-    return &r->last.footprints[tile * ZT_REUSE_PARTS + first / ZT_REUSE_PIXELS];
+    return &r->last.footprints[tile * ZT_PICTURE_PARTS + first / ZT_REUSE_PIXELS];
 }
 
 #endif

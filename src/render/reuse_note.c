@@ -16,6 +16,6 @@ void zt_reuse_note(zt_frame *f, const zt_footprint *footprint, int column, int r
     atomic_flag *lock = &r->locks[tile % ZT_REUSE_LOCKS];
     if (footprint->doubtful) atomic_store_explicit(&f->doubtful, true, memory_order_relaxed);
     while (atomic_flag_test_and_set_explicit(lock, memory_order_acquire)) thrd_yield();
-    zt_footprint_join(&r->last.footprints[tile * ZT_REUSE_PARTS + part], footprint);
+    zt_footprint_join(&r->last.footprints[tile * ZT_PICTURE_PARTS + part], footprint);
     atomic_flag_clear_explicit(lock, memory_order_release);
 }

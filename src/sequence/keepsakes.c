@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "keyframe/animation.h"
 #include "render/keepsake.h"
+#include "render/reuse.h"
 
 /* How much longer than one core takes to make and find its keepsake a frame must take all of
  * them; and what that is: so much for each, and for each of its bytes, in seconds. A quarter
