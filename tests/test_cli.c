@@ -255,7 +255,7 @@ static void precision(void **state) {
 /* Where images go by default; what is told of it, and what is not when quiet. */
 static void default_targets(void **state) {
     (void)state;
-    run *r = zoetrope("render film.yaml");
+    run *r = zoetrope("render film.yaml --keep 0"); /* however long frames take */
     assert_int_equal(r->code, 0);
     assert_contains(r->err, "output/film.mp4: 6 frames in ");
     assert_null(strpbrk(r->err, "\r\033")); /* which are for terminals */
@@ -265,10 +265,10 @@ static void default_targets(void **state) {
     assert_string_equal(r->err, "");
     assert_string_equal(r->out, "");
     assert_true(exists("output/film.0003.png"));
-    zoetrope_succeeds("preview ./film.yaml");
+    zoetrope_succeeds("preview ./film.yaml --keep 0");
     assert_true(exists("output/film.preview.mp4"));
     assert_int_equal(entry_count("output"), 5); /* and what is known of the two films */
-    zoetrope_succeeds("render film.yaml -o stills/f.###.png");
+    zoetrope_succeeds("render film.yaml -o stills/f.###.png --keep 0");
     assert_true(exists("stills/f.000.png") && exists("stills/f.005.png"));
     assert_int_equal(entry_count("stills"), 7); /* and what is known of them */
 }
