@@ -167,7 +167,7 @@ float zt_canvas_error(const zt_canvas *canvas, const zt_slot *slot) {
     if (!(sum.weight > 0)) return NO_ESTIMATE;
     if (!(sum.step > 0)) return 0;
     if (isinf(sum.error)) return sum.error;
-    float shared = fminf(2 / sqrtf((float)slot->asked), 1);
+    float shared = canvas->at_edges ? 0.25f : fminf(2 / sqrtf((float)slot->asked), 1);
     float own = canvas->step[zt_canvas_pixel(canvas, x, y)] / sum.step;
     return sum.error * ((1 - shared) * own + shared / sum.weight);
 }

@@ -52,7 +52,7 @@ typedef struct zt_canvas {
     uint32_t *path;
     uint8_t *edge, *least;
     int32_t slot_count, waiting_count, round_count;
-    int32_t enough; /* a pixel with fewer samples is to have as much smaller a squared error */
+    bool at_edges;  /* these are the canvas's pixels */
     bool is_random; /* what samples meet is, not only where in pixels they are taken */
 } zt_canvas;
 
@@ -109,8 +109,18 @@ float zt_canvas_estimate(float *step, const zt_canvas_sum positive[2],
 
 /* The squared error of a slot's pixel. How much larger errors are than those of steps is that
  * of all pixels around, so that two halves that agree by luck do not count for much. How much
- * its samples differ is its own the more, the more they are: few may all have missed what is
- * next to it. Negative where there is none. */
+ * its samples differ is its own in part, as they may all have missed what is next to it: the
+ * more, the more they are; at edges, where pixels that have what is around begin with enough
+ * (render/edges.c), by three quarters. Negative where there is none. */
 float zt_canvas_error(const zt_canvas *canvas, const zt_slot *slot);
+
+/* The squared error that a pixel with so many samples is to have, over that asked for. At edges
+ * it is as the number is: a picture has the least error for its time where each further sample
+ * of a pixel gains as much (Neyman, "On the two different aspects of the representative
+ * method", 1934). */
+static inline float zt_canvas_share(const zt_canvas *canvas, int64_t asked) {
+    enum { AS_ASKED = 100 };
+    return canvas->at_edges ? (float)asked / AS_ASKED : 1;
+}
 
 #endif

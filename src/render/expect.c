@@ -19,7 +19,7 @@ static void expect_slot(double *further, const zt_canvas *canvas, const zt_slot 
     if (!(error > 0)) return;
     double level = -0.5 * ZT_EXPECT_OCTAVE * log2(fmin(error, 1));
     for (int64_t asked = slot->asked; asked < max; asked *= 2) {
-        double share = fmin((double)asked / canvas->enough, 1);
+        double share = (double)zt_canvas_share(canvas, asked);
         int from = (int)ceil(level + 0.5 * ZT_EXPECT_OCTAVE * log2(share));
         if (from >= ZT_EXPECT_COUNT) return;
         further[max_int(from, 0)] += (double)(asked < max - asked ? asked : max - asked);

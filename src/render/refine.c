@@ -16,11 +16,6 @@
 
 enum { DECISIONS = 4096 }; /* of a task */
 
-/* At edges, a pixel with fewer samples than this is to have as much smaller a squared error. A
- * picture has the least error for its time where squared errors are as the numbers of samples
- * are (Neyman, "On the two different aspects of the representative method", 1934). */
-enum { CHEAP = 64 };
-
 static void decide_task(void *user, int task, int worker) {
     (void)worker;
     const zt_round_job *j = user;
@@ -31,10 +26,9 @@ static void decide_task(void *user, int task, int worker) {
         const zt_slot *s = &canvas->slots[canvas->round[i]];
         int least =
             f->at_edges ? 1 << canvas->least[zt_canvas_pixel(canvas, s->column, s->row)] : 0;
-        float share = fminf((float)s->asked / (float)canvas->enough, 1);
-        canvas->goes_on[i] =
-            s->asked < f->job->sampling.max &&
-            (s->asked < least || zt_canvas_error(canvas, s) > share * j->wanted);
+        float wanted = zt_canvas_share(canvas, s->asked) * j->wanted;
+        canvas->goes_on[i] = s->asked < f->job->sampling.max &&
+                             (s->asked < least || zt_canvas_error(canvas, s) > wanted);
     }
 }
 
@@ -135,7 +129,7 @@ zt_status zt_refine(zt_frame *f) {
     zt_canvas *canvas = &f->work->canvas;
     zt_round_job j = {.frame = f, .is_signed = zt_warp_is_signed(f->job->warp)};
     double taken = f->at_edges ? pixels_of(canvas) : 0;
-    canvas->enough = f->at_edges ? CHEAP : 1;
+    canvas->at_edges = f->at_edges;
     canvas->is_random = zt_render_is_random(f->job);
     while (canvas->waiting_count > 0) {
         j = zt_round_plan(f, begin_round(canvas));

@@ -6,14 +6,19 @@
 #include "render/reuse.h"
 #include "tracer/isa.h"
 
-/* Samples of a pixel at least, and where edges cannot be told; so many that rays share a batch
- * with few others; rays that a thread takes at a time. */
-enum { PAIR = 2, BLIND = 8, TOGETHER = 16, TASK_RAYS = 1024 };
+/* Samples of a pixel at least, and where edges cannot be told, or nearly all that are at one go
+ * on to so many, which then travel together; so many that rays share a batch with few others;
+ * rays that a thread takes at a time. */
+enum { PAIR = 2, EIGHT = 8, TOGETHER = 16, TASK_RAYS = 1024 };
+
+/* Nearly all go on so far where the error is to be below this. */
+#define TINY 0x1p-7
 
 /* Samples of a slot in the round after it has taken `asked`. */
 static int32_t more_of(const zt_frame *f, int32_t asked) {
     const zt_sampling *s = &f->job->sampling;
-    int first = max_int(s->min, s->edges && !f->at_edges ? BLIND : PAIR);
+    bool eight = s->edges && (!f->at_edges || s->error < TINY);
+    int first = max_int(s->min, eight ? EIGHT : PAIR);
     return min_int(asked ? asked : first, s->max - asked);
 }
 
