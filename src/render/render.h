@@ -63,6 +63,10 @@ static inline bool zt_render_is_at_edges(const zt_render_job *job) {
     return job->sampling.edges && !zt_render_is_even(job) && !zt_render_is_random(job);
 }
 
+/* How many samples a pixel takes first, where not all take as many; it then goes on to twice as
+ * many each time. */
+int zt_render_first_samples(const zt_render_job *job);
+
 /* What keeps tiles of such frames from being copied from one to the next where the camera
  * stands still, as a sentence; NULL: nothing does. */
 const char *zt_reuse_hindrance(const zt_render_job *job);

@@ -14,12 +14,16 @@ enum { PAIR = 2, EIGHT = 8, TOGETHER = 16, TASK_RAYS = 1024 };
 /* Nearly all go on so far where the error is to be below this. */
 #define TINY 0x1p-7
 
+int zt_render_first_samples(const zt_render_job *job) {
+    const zt_sampling *s = &job->sampling;
+    bool eight = s->edges && (!zt_render_is_at_edges(job) || s->error < TINY);
+    return max_int(s->min, eight ? EIGHT : PAIR);
+}
+
 /* Samples of a slot in the round after it has taken `asked`. */
 static int32_t more_of(const zt_frame *f, int32_t asked) {
-    const zt_sampling *s = &f->job->sampling;
-    bool eight = s->edges && (!f->at_edges || s->error < TINY);
-    int first = max_int(s->min, eight ? EIGHT : PAIR);
-    return min_int(asked ? asked : first, s->max - asked);
+    int first = zt_render_first_samples(f->job);
+    return min_int(asked ? asked : first, f->job->sampling.max - asked);
 }
 
 zt_round_job zt_round_plan(zt_frame *f, int32_t asked) {

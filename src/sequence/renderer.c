@@ -126,7 +126,7 @@ static zt_hash view_of(const zt_renderer *r, const zt_taking *t) {
     const double numbers[] = {r->format.width,
                               r->format.height,
                               r->animation->film.transparent,
-                              s->min,
+                              at_edges ? zt_render_first_samples(&t->job) : s->min,
                               s->max,
                               at_edges ? 0 : s->error,
                               at_edges ? 0 : s->mean_max,

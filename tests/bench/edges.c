@@ -20,8 +20,8 @@ static const struct scene {
     double povray_reach, even_reach;
 } scenes[] = {{"fig1b", 8, 3, 40, 4}, {"fig1a", 2, 3, 20, 4}};
 
-static const double errors[] = {0.2, 0.1, 0.05, 0.025, 0.0125, 0.006, 0.003, 0.0015};
-static const int counts[] = {1, 2, 4, 8, 16, 32, 64, 128};
+static const double errors[] = {0.2, 0.1, 0.05, 0.025, 0.0125, 0.006, 0.003, 0.0015, 0.00075};
+static const int counts[] = {1, 2, 4, 8, 16, 32, 64, 128, 256};
 enum {
     ERROR_COUNT = sizeof errors / sizeof *errors,
     EVEN_COUNT = sizeof counts / sizeof *counts,
