@@ -153,7 +153,8 @@ static void interrupts(void **state) {
     write_longer("long.yaml", "36000 s");
     const int signals[] = {SIGINT, SIGTERM};
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(interrupt(shown, "render long.yaml -o long.mp4", signals[i]), 130);
+        assert_int_equal(interrupt(shown, "render long.yaml -o long.mp4 --keep 0", signals[i]),
+                         130);
         assert_contains(shown, "\r\033[K"); /* the line of progress was rewritten */
         const char *said = strstr(shown, "interrupted: long.mp4 has the first ");
         assert_non_null(said);
