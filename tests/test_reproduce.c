@@ -166,23 +166,23 @@ static void refusals(void **state) {
     zoetrope_succeeds("render film.yaml --frames 3 -o a.jpg");
     zt_image *image;
     assert_int_equal(zt_image_read(&image, "a.exr", (zt_listener){0}), ZT_OK);
-    assert_contains(image->info.settings, "\"arithmetic\": \"zoetrope 2 " ZT_MACHINE "\"");
+    assert_contains(image->info.settings, "\"arithmetic\": \"zoetrope 3 " ZT_MACHINE "\"");
     zt_image_free(&image);
     write_with_settings("far/a.exr", "a.exr",
-                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 2 " ZT_MACHINE
+                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 3 " ZT_MACHINE
                         "\", \"size\": [64, 36], "
                         "\"min\": 1, \"max\": 1, \"filter\": \"box\", \"seed\": 0, "
                         "\"precision\": \"auto\", \"view\": \"srgb\"}");
     write_with_settings("broken.exr", "a.exr", "{\"zoetrope\": 1, \"size\": 7}");
     write_with_settings("nothing.exr", "a.exr", NULL);
     write_with_settings("small.exr", "a.exr",
-                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 2 " ZT_MACHINE
+                        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 3 " ZT_MACHINE
                         "\", \"size\": [64, 35], "
                         "\"min\": 1, \"max\": 1, \"filter\": \"box\", \"seed\": 0, "
                         "\"precision\": \"auto\", \"view\": \"srgb\"}");
     write_with_settings(
         "later.exr", "a.exr",
-        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 2 vax\", \"size\": [64, 36], "
+        "{\"zoetrope\": 1, \"arithmetic\": \"zoetrope 3 vax\", \"size\": [64, 36], "
         "\"min\": 2, \"max\": 2, \"filter\": \"box\", \"seed\": 0, "
         "\"precision\": \"auto\", \"view\": \"srgb\"}");
     static const refusal cases[] = {

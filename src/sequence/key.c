@@ -12,7 +12,7 @@
 #include "sequence/pacing.h"
 #include "sequence/shutter.h"
 
-const char zt_arithmetic[] = "zoetrope 2 " ZT_MACHINE;
+const char zt_arithmetic[] = "zoetrope 3 " ZT_MACHINE;
 
 /* Of all meshes, once: they are the film's, and never change. */
 static zt_status find_held(zt_renderer *r) {

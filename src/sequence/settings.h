@@ -28,7 +28,7 @@ typedef struct zt_settings {
 
 /* A line of JSON, of letters of ASCII alone, in the arena:
  *
- *   {"zoetrope": 1, "arithmetic": "zoetrope 2 x86-64", "size": [1280, 720], "min": 4,
+ *   {"zoetrope": 1, "arithmetic": "zoetrope 3 x86-64", "size": [1280, 720], "min": 4,
  *    "max": 64, "error": 0.002, "filter": "gaussian", "filter_width": 2.00, "seed": 0,
  *    "precision": "auto", "view": "srgb", "aovs": ["Z"], "format": "bits=half",
  *    "set": ["lamp.intensity", "40"]}
