@@ -25,8 +25,7 @@ const char *zt_filter_name(zt_filter filter);
 typedef struct zt_sampling {
     int min, max; /* samples a pixel; where they are the same, as many in each */
     double error; /* a pixel whose estimated standard error, in linear light, is below this is
-                     left, at edges below a tenth of it for each root of a sample that it has
-                     taken; 0 where min = max */
+                     left, at edges below less where it takes few; 0 where min = max */
     int mean_max; /* no further samples once pixels would have more than so many on average; 0:
                      no bound. Of adaptive sampling, for budgets */
     bool edges;   /* begin with one sample a pixel, and go on only where neighbours differ */

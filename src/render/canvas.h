@@ -115,12 +115,12 @@ float zt_canvas_estimate(float *step, const zt_canvas_sum positive[2],
 float zt_canvas_error(const zt_canvas *canvas, const zt_slot *slot);
 
 /* The squared error that a pixel with so many samples is to have, over that asked for. At edges
- * it is as the number is: a picture has the least error for its time where each further sample
- * of a pixel gains as much (Neyman, "On the two different aspects of the representative
- * method", 1934). */
+ * it is as the number is, up to that: a picture has the least error for its time where each
+ * further sample of a pixel gains as much (Neyman, "On the two different aspects of the
+ * representative method", 1934). */
 static inline float zt_canvas_share(const zt_canvas *canvas, int64_t asked) {
     enum { AS_ASKED = 100 };
-    return canvas->at_edges ? (float)asked / AS_ASKED : 1;
+    return canvas->at_edges && asked < AS_ASKED ? (float)asked / AS_ASKED : 1;
 }
 
 #endif
