@@ -91,6 +91,31 @@ static void no_sample_is_taken_twice(void **state) {
     reel_close(&r);
 }
 
+/* A keepsake that claims to be of a filter with signs, and has no sums of them, is none. */
+static void sums_of_another_filter_are_none(void **state) {
+    (void)state;
+    static test_scene s;
+    keepsake k = {0};
+    zt_picture picture = {0};
+    reel r;
+    reel_open(&r, NULL, 0);
+    row_of_balls(&s);
+    r.sampling = edges;
+    show_with(&r, NULL, &s.scene);
+    keep(&k, &r);
+    r.sampling = signed_edges;
+    show_with(&r, NULL, &s.scene);
+    take_out(&picture, &k);
+    picture.view = r.reuse->last.view;
+    begin_anew(&r);
+    r.reuse->kept = &picture;
+    assert_int_equal(reel_show(&r, &s.scene), 0);
+    r.reuse->kept = NULL;
+    zt_picture_close(&picture);
+    free(k.bytes);
+    reel_close(&r);
+}
+
 /* Where decisions go from pixel to pixel, tiles come from one picture alone: that which has
  * more of them. */
 static void the_better_one_is_copied_from(void **state) {
@@ -105,12 +130,14 @@ static void the_better_one_is_copied_from(void **state) {
         r.sampling = way & 2 ? edges : (zt_sampling){.min = 4, .max = 16, .error = 0.02};
         row_of_balls(&s);
         zt_sphere *moves = &s.objects[4].sphere, *edited = &s.objects[1].sphere;
-        if (of_kept) edited->radius = 0.29; /* a small edit, and much that moves */
+        if (of_kept)
+            edited->radius = 0.29; /* a small edit, and much that moves; or another way */
+        if (!of_kept) moves->center.y = 0.5;
         show_with(&r, NULL, &s.scene);
         keep(&k, &r);
         take_out(&picture, &k);
         edited->radius = 0.3;
-        if (of_kept) moves->center.y = 0.5;
+        moves->center.y = of_kept ? 0.5 : -0.7;
         show_with(&r, NULL, &s.scene);
         reel_show(&r, &s.scene);
         if (of_kept) moves->center.y = -0.7;
@@ -119,7 +146,7 @@ static void the_better_one_is_copied_from(void **state) {
         r.kept = 0;
         int64_t copied = reel_show(&r, &s.scene);
         assert_in_range(copied, 1, REEL_TILES - 1);
-        if (of_kept) assert_int_equal(r.kept, copied);
+        assert_int_equal(r.kept, of_kept ? copied : 0);
         r.reuse->kept = NULL;
         zt_picture_close(&picture);
     }
@@ -225,6 +252,7 @@ int main(void) {
         cmocka_unit_test(an_edit_costs_what_it_changes),
         cmocka_unit_test(no_sample_is_taken_twice),
         cmocka_unit_test(either_has_what_the_other_has_not),
+        cmocka_unit_test(sums_of_another_filter_are_none),
         cmocka_unit_test(the_better_one_is_copied_from),
         cmocka_unit_test(after_any_edit_it_is_the_same),
     };

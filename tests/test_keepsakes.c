@@ -99,6 +99,18 @@ static void edits_are_cheap(void **state) {
     assert_int_equal(count_files(KEPT, &size), 4);
 }
 
+/* How many primary rays a run traced. */
+static int64_t traced(const char *arguments) {
+    run *r = zoetrope(arguments);
+    const char *at = r->code == 0 ? strstr(r->out, "primary rays") : NULL;
+    int64_t count = 0;
+    assert_non_null(at);
+    for (at += strspn(at, "primary rays"); (*at >= '0' && *at <= '9') || *at == ','; at++)
+        if (*at != ',') count = 10 * count + (*at - '0');
+    assert_true(count > 0);
+    return count;
+}
+
 /* At edges likewise; and with a lower error only those samples are taken that are new. */
 static void edges_are_kept(void **state) {
     (void)state;
@@ -111,7 +123,10 @@ static void edges_are_kept(void **state) {
     render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
     write_film(ball, "blue", 6);
     render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
-    render(EDGES "--samples 64-256 --error 0.0002", 6, 100, 6);
+    int64_t new = traced(EDGES "--samples 64-256 --error 0.0002"),
+            all = traced("render film.yaml -o x.hash --set film.quality=edges --threads 1 "
+                         "--stats --samples 64-256 --error 0.0002");
+    assert_in_range(new, 1, all / 2);
     render(EDGES "--samples 128-256 --error 0.0002", 0, 0, 6);
 }
 

@@ -20,11 +20,6 @@ static xform solid_place(const zt_object *o, const xform *world) {
     xform own = xform_identity();
     vec3 axis = {0, 0, 0};
     double wide = 1, length = 1;
-    if (o->shape == ZT_SHAPE_MESH) {
-        const zt_placement *p = &o->placement;
-        own = xform_place(p->position, p->rotation, p->scale);
-        return xform_mul(world, &own);
-    }
     if (o->shape == ZT_SHAPE_BOX) {
         own = xform_place(o->box.center, o->box.rotation, o->box.size);
         return xform_mul(world, &own);
@@ -55,11 +50,6 @@ static xform solid_place(const zt_object *o, const xform *world) {
 static void canonical(zt_object *out, const zt_object *a, const zt_object *b, double s) {
     double r = mix(a->tube.radius, b->tube.radius, s);
     switch (a->shape) {
-    case ZT_SHAPE_MESH:
-        *out = *a;
-        out->parent = -1;
-        out->placement = (zt_placement){{0, 0, 0}, {1, 0, 0, 0}, {1, 1, 1}};
-        break;
     case ZT_SHAPE_BOX:
         out->box = (zt_block){{0, 0, 0}, {1, 1, 1}, {1, 0, 0, 0}};
         break;
@@ -100,11 +90,6 @@ static void set_solid(zt_object *o, uint64_t seed, double amount) {
     double length = 1.5 * (1 + amount * test_between(&seed, 0, .3));
     vec3 end = vec3_add(at, vec3_scale(axis, length));
     switch (o->shape) {
-    case ZT_SHAPE_MESH:
-        o->mesh = (int32_t)(seed / 100 & 1);
-        o->smooth = models[o->mesh].normals != NULL;
-        o->placement = (zt_placement){at, quat_axis_angle(axis, 1 + amount), {size, other, 1}};
-        break;
     case ZT_SHAPE_SPHERE:
         o->sphere = (zt_sphere){at, size};
         break;

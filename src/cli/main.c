@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -283,37 +284,40 @@ static int reproduce(const zt_options *options, zt_report *report) {
     return status == ZT_OK && differs ? EXIT_DIFFERENT : exit_code(status, report);
 }
 
-static int run_command(int argc, char **argv) {
-    zt_report report = zt_report_create();
+static int run_command(int argc, char **argv, zt_report *report) {
     zt_options options;
-    switch (zt_options_read(&options, argc, argv, &report)) {
+    switch (zt_options_read(&options, argc, argv, report)) {
     case ZT_REQUEST_SHOWN:
-        return exit_code(zt_report_finish(&report), &report);
+        return EXIT_SUCCESS;
     case ZT_REQUEST_WRONG:
         return EXIT_USAGE;
     case ZT_REQUEST_RUN:
         break;
     }
-    report.quiet = options.quiet;
+    report->quiet = options.quiet;
     switch (options.command) {
     case ZT_COMMAND_ENCODE:
         listen_for_interrupts();
-        return exit_code(zt_encode(&options, stopped, &report), &report);
+        return exit_code(zt_encode(&options, stopped, report), report);
     case ZT_COMMAND_DIFF:
         listen_for_interrupts();
-        return exit_code(zt_diff_films(&options, stopped, &report), &report);
+        return exit_code(zt_diff_films(&options, stopped, report), report);
     case ZT_COMMAND_REPRODUCE:
         listen_for_interrupts();
-        return reproduce(&options, &report);
+        return reproduce(&options, report);
     default:
-        return exit_code(of_film(&options, &report), &report);
+        return exit_code(of_film(&options, report), report);
     }
 }
 
 int main(int argc, char **argv) {
     hold_standard_streams();
-    int code = run_command(argc, argv);
-    fflush(NULL);
+    zt_report report = zt_report_create();
+    int code = run_command(argc, argv, &report);
+    if (code == EXIT_SUCCESS)
+        code = exit_code(zt_report_finish(&report), &report);
+    else
+        fflush(stdout); /* it has failed as it is */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
     return code; /* what they found is told at the end */
 #else

@@ -13,9 +13,9 @@
 enum { REFLECTIONS_MAX = 1000, SAMPLES_MAX = 65536, FRAME_COUNT_MAX = 100 * 1000 * 1000 };
 
 /* Where adaptive sampling says nothing else: samples a pixel, of which there are at least so
- * many more at most than at least; and the error that refined edges may have where they take
- * all of these samples: with fewer they are held to less (render/refine.c), so that a picture's
- * is far below what a display of 8 bits can tell apart. */
+ * many more at most than at least; and the error that refined edges may have where they take a
+ * hundred: with fewer they are held to less (zt_canvas_share), so that a picture's is far
+ * below what a display of 8 bits can tell apart. */
 enum { MIN_SAMPLES = 4, MAX_SAMPLES = 64, MAX_PER_MIN = 4 };
 #define EDGES_ERROR 0.01
 

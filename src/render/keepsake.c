@@ -130,6 +130,9 @@ static void pass_pixels(stream *s, zt_picture *p, bool opaque) {
 /* What is said of a round before it: that there is one; what of it is so. */
 enum { THERE = 1, STRANGE = 2, COVERS = 4 };
 
+/* More samples than this are none that anybody took. */
+enum { TAKEN_MAX = 1 << 20 };
+
 /* How many samples met something is 0 in all where nobody asked. */
 static void pass_sum(stream *s, zt_canvas_sum *sum, bool covers) {
     pass(s, &sum->r, offsetof(zt_canvas_sum, a));
@@ -139,6 +142,7 @@ static void pass_sum(stream *s, zt_canvas_sum *sum, bool covers) {
         sum->a = 0;
     pass(s, &sum->square, sizeof sum->square);
     pass(s, &sum->taken, sizeof sum->taken);
+    s->lacking |= !s->to && (sum->taken < 0 || sum->taken > TAKEN_MAX);
 }
 
 static uint8_t say_round(const zt_rounds *r, uint32_t number) {
@@ -190,7 +194,8 @@ static void pass_all(stream *s, zt_picture *p, bool opaque) {
 
 size_t zt_keepsake_room(const zt_picture *p) {
     const size_t of_pixel = p->at_edges ? sizeof *p->paths + 1 : 0;
-    const size_t of_round = sizeof *p->rounds.rounds + sizeof *p->rounds.negative;
+    const size_t of_round =
+        1 + sizeof(zt_round) + (p->rounds.negative ? sizeof(zt_canvas_sum) : 0);
     return sizeof(zt_keepsake_head) + sizeof p->outline +
            (size_t)p->outline.thing_count * sizeof *p->outline.things +
            (size_t)p->outline.lamp_count * sizeof *p->outline.lamps +

@@ -18,7 +18,7 @@ typedef struct zt_picture {
     bool at_edges;            /* pixels are those of the first samples, in the middles; */
     float *pixels;            /* R G B A */
     uint32_t *paths;          /* and there are what these saw, */
-    zt_rounds rounds;         /* and what the further ones came to; else NULL and zeros */
+    zt_rounds rounds;         /* and what the further ones came to; else they mean nothing */
     zt_footprint *footprints; /* ZT_PICTURE_PARTS for each tile */
     zt_outline outline;
     zt_arena arena; /* the outline's */

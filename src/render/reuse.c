@@ -140,9 +140,11 @@ static zt_status make_room(zt_reuse *r, const zt_frame *f) {
 /* The picture that was kept, where it is of the same rays. */
 static zt_picture *kept_of(const zt_reuse *r, const zt_frame *f) {
     zt_picture *kept = r->kept;
-    bool fits = kept && kept->whole && kept->at_edges == f->at_edges &&
-                zt_hash_equal(kept->view, f->job->view) && kept->width == f->image->width &&
-                kept->height == f->image->height;
+    bool fits =
+        kept && kept->whole && kept->at_edges == f->at_edges &&
+        (!f->at_edges || (kept->rounds.negative != NULL) == zt_warp_is_signed(f->job->warp)) &&
+        zt_hash_equal(kept->view, f->job->view) && kept->width == f->image->width &&
+        kept->height == f->image->height;
     return fits ? kept : NULL;
 }
 
@@ -184,12 +186,12 @@ static void forget_rounds(const zt_frame *f, zt_picture *p) {
 /* What there is at edges goes on from the picture that tiles are copied from. */
 static zt_status open_edges(zt_frame *f, zt_picture *last, zt_picture *kept) {
     if (kept) {
-        zt_rounds rounds = kept->rounds;
-        uint32_t *paths = kept->paths;
-        kept->rounds = last->rounds;
-        kept->paths = last->paths;
-        last->rounds = rounds;
-        last->paths = paths;
+        const zt_picture before = *last;
+        last->rounds = kept->rounds;
+        last->paths = kept->paths;
+        kept->rounds = before.rounds;
+        kept->paths = before.paths;
+        kept->whole = false;
     }
     if (f->copies)
         forget_rounds(f, last);

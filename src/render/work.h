@@ -49,11 +49,11 @@ typedef struct zt_frame {
     uint64_t serial; /* its new tiles' stamp; 0: nothing is known of them */
     int run;         /* tiles that a thread takes at a time */
     bool even;       /* as many samples in each pixel, which follow from nothing else; */
-    uint32_t
-        *paths; /* plane of what the middles of pixels saw, and what they tell things by; */
-    zt_labels labels; /* of at_edges */
-    zt_trace *trace;  /* the kernel without what this frame does not ask for */
-    bool costly;      /* rays look into hierarchies, and cost more than what else batches do */
+    /* Of at_edges: a plane of what the middles of pixels saw, and what they tell things by. */
+    uint32_t *paths;
+    zt_labels labels;
+    zt_trace *trace; /* the kernel without what this frame does not ask for */
+    bool costly;     /* rays look into hierarchies, and cost more than what else batches do */
     bool at_edges; /* or first one sample in the middle of each pixel, then more at edges alone
                     */
     /* Of the job's reuse: it takes down what is rendered; could copy; does so. */

@@ -21,9 +21,9 @@
 #include "render/reuse.h"
 
 /* How much longer than one core takes to make and find its keepsake a frame must take all of
- * them; and what that is: so much for each, and for each of its bytes, in seconds. A quarter
- * of it is finding. */
-static const double worth = 3, file_s = 2e-4, byte_s = 1.6e-9;
+ * them; and what that is: so much for each, and for each byte that it has room for, in seconds;
+ * and how many these are for a pixel at least. A quarter of it is finding. */
+static const double worth = 3, file_s = 2e-4, byte_s = 1e-9, pixel_bytes = 21;
 /* How long it may wait for the disk in all: so many seconds, and a share of the time for
  * rendering. */
 static const double grace_s = 1, patience = 0.03;
@@ -45,8 +45,7 @@ struct zt_keepsakes {
     uint64_t most, size; /* bytes that there may be, and are */
     entry *entries;      /* by rising frame */
     size_t count, room;
-    double expected_s;           /* the next frame takes, by the last one, */
-    double expected_bytes;       /* and its keepsake, likewise */
+    double expected_s;           /* the next frame takes, by the last one */
     double rendered_s, waited_s; /* in all; the latter for the errand */
     zt_picture picture;          /* what is copied from */
     bool offered;                /* for the frame that is being rendered */
@@ -248,7 +247,7 @@ static void write_made(void *user) {
 /* ---- before and after a frame ---------------------------------------------------------------
  */
 
-/* How long a frame must take for one of so many bytes. */
+/* How long a frame must take for one with room for so many bytes. */
 static double least_s(double bytes) { return worth * (file_s + byte_s * bytes); }
 
 /* Grows memory whose contents mean nothing. */
@@ -273,21 +272,21 @@ static bool read_keepsake(zt_keepsakes *k, const entry *e) {
 
 void zt_keepsakes_offer(zt_keepsakes *k, const zt_render_job *job, int64_t frame) {
     if (!k) return;
+    const zt_output_format *format = &k->renderer->format;
     zt_reuse *reuse = k->renderer->reuse;
     entry *e = find(k, frame);
     k->offered = e && zt_hash_equal(e->view, job->view) && read_keepsake(k, e);
     if (e && !k->offered) drop(k, e);
     reuse->kept = k->offered ? &k->picture : NULL;
-    reuse->keeps = !k->told && k->expected_s >= least_s(k->expected_bytes) &&
+    reuse->keeps = !k->told &&
+                   k->expected_s >= least_s(pixel_bytes * format->width * format->height) &&
                    !zt_reuse_hindrance(job); /* of use */
 }
 
-/* Hands the picture over to the errand, if that is worth it and there is room for it. */
+/* Hands the picture over to the errand, if there is room for it. */
 static zt_status make(zt_keepsakes *k, const zt_picture *picture, zt_keepsake_head *head) {
     if (!grow(&k->made, &k->made_room, zt_keepsake_room(picture))) return ZT_EMEMORY;
     zt_keepsake_write(k->made, head, picture, zt_arithmetic);
-    k->expected_bytes = (double)head->size;
-    if (head->render_s < least_s(k->expected_bytes)) return ZT_OK;
     if (!make_room(k, head->frame, head->size, head->render_s)) return ZT_OK;
     ZT_TRY(
         remember(k, &(entry){head->frame, head->size, head->render_s, head->view, head->key}));
@@ -330,8 +329,8 @@ void zt_keepsakes_take(zt_keepsakes *k, int64_t frame, zt_hash key) {
     k->expected_s = render_s;
     k->rendered_s += cost->own_s;
     bool fresh = k->offered && zt_hash_equal(old->key, key);
-    if (fresh || !r->reuse->keeps || !last->whole || render_s < least_s(k->expected_bytes))
-        return;
+    if (fresh || !r->reuse->keeps || !last->whole) return;
+    if (render_s < least_s((double)zt_keepsake_room(last))) return;
     if (atomic_load(&k->making) && k->waited_s > grace_s + patience * k->rendered_s) return;
     settle(k);
     if (k->failure) return;

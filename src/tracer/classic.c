@@ -7,6 +7,7 @@
 
 #include "tracer/footsteps.h"
 #include "tracer/intersect.h"
+#include "tracer/sampler.h"
 #include "tracer/work.h"
 
 #define intersect    ZT_KERNEL_NAME(zt_intersect)

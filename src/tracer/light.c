@@ -4,6 +4,7 @@
 
 #include "tracer/footsteps.h"
 #include "tracer/intersect.h"
+#include "tracer/sampler.h"
 #include "tracer/work.h"
 
 #define aim       ZT_KERNEL_NAME(zt_lamp_aim)
@@ -120,7 +121,7 @@ static void add_lamp(zt_work *restrict w) {
     }
 }
 
-/* Takes note of where lamp number `index` is hidden. */
+/* Takes note of where the lamp of that label is hidden. */
 static void note_hidden(zt_work *restrict w, uint32_t label) {
     int padded = zt_batch_padded(w->points.count);
     WIDE_LOOP for (int k = 0; k < padded; k++) w->hidden[k] +=

@@ -8,7 +8,6 @@
 #include "tracer/footprint.h"
 #include "tracer/isa.h"
 #include "tracer/points.h"
-#include "tracer/sampler.h"
 #include "tracer/tracer.h"
 
 /* What blocked lamps from a thread's last batches: likely it will again. Any contents will do;

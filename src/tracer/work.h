@@ -21,7 +21,7 @@ typedef struct zt_work {
     alignas(64) real sum_g[ZT_BATCH];
     alignas(64) real sum_b[ZT_BATCH];
     zt_lamp_light lamp;
-    alignas(64) uint32_t hidden[ZT_BATCH]; /* a hash of the lamps that something hides */
+    alignas(64) uint32_t hidden[ZT_BATCH]; /* the sum of the labels of lamps that are */
     alignas(64) int32_t wanted[ZT_BATCH];  /* which of the rays or points go on */
     alignas(64) int32_t list[ZT_BATCH];    /* the numbers of those */
     zt_reach_memory reach;
