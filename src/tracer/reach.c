@@ -313,11 +313,11 @@ static void ask(lamps *l, uint32_t *hidden, zt_reach_memory *memory, uint32_t bl
 }
 
 /* Those that blocked something before, from the last to the first, so that one that hides only
- * what another one hides as well comes after that and is forgotten; and a few others each time.
- */
+ * what another one hides as well comes after that and is forgotten; and a few others each time,
+ * or many where more lamps are left than the last time. */
 static void block_all(lamps *l, uint32_t *hidden, zt_reach_memory *memory,
                       const zt_reach_points *points, const zt_tracer *tracer) {
-    enum { OTHERS = 4 };
+    enum { FEW = 2, MANY = 16 };
     const zt_reach_memory before = *memory;
     const uint32_t count = (uint32_t)tracer->reach->blocker_count;
     uint32_t asked = 0, others = 0;
@@ -328,13 +328,15 @@ static void block_all(lamps *l, uint32_t *hidden, zt_reach_memory *memory,
         asked |= 1u << b;
         ask(l, hidden, memory, b, points, tracer);
     }
-    for (uint32_t i = 0; i < count && others < OTHERS && l->count > 0; i++) {
+    const uint32_t most = l->count > before.left ? MANY : FEW;
+    for (uint32_t i = 0; i < count && others < most && l->count > 0; i++) {
         const uint32_t b = (before.next % count + i) % count;
         if (asked >> b & 1) continue;
         others++;
         memory->next = b + 1;
         ask(l, hidden, memory, b, points, tracer);
     }
+    memory->left = l->count;
 }
 
 int ZT_KERNEL_NAME(zt_reach_list)(int32_t *list, uint32_t *hidden, zt_reach_memory *memory,

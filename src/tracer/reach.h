@@ -15,6 +15,7 @@
 typedef struct zt_reach_memory {
     uint8_t useful[ZT_BLOCKERS_MAX]; /* blockers, in the order in which they were asked */
     uint32_t useful_count;
+    int32_t left;  /* how many lamps were */
     uint32_t next; /* the one to try next of the others */
 } zt_reach_memory;
 
