@@ -15,7 +15,7 @@ typedef struct words {
 
 static words in_words(double seconds) {
     words w;
-    if (seconds < 1)
+    if (seconds < 0.9995) /* what would be 1e+03 */
         snprintf(w.text, sizeof w.text, "%.3g ms", 1000 * seconds);
     else if (seconds < 120)
         snprintf(w.text, sizeof w.text, "%.3g s", seconds);

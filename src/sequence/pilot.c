@@ -183,6 +183,8 @@ enum { LAST = ZT_EXPECT_COUNT - 1, LEAP = 3 * ZT_EXPECT_OCTAVE };
 #define FEW   0.25 /* of the least samples, what weighs as much as what was expected of more */
 #define SMALL 0.15 /* of the pilot's time, for ever smaller errors of a small picture */
 #define TWICE 1.6  /* a picture's least time by its pixels, for two looks at a larger one */
+#define JOIN  1.12 /* to this power of what was expected samples grow: the more there are, the
+                      more pixels go on that seemed good enough by luck; as measured */
 
 /* What a picture takes, and what it would take with other errors. Samples are those of the
  * whole picture; seconds are of rendering, once all is made that lasts. */
@@ -205,7 +207,8 @@ static double samples_with(const view *v, int error) {
     if (error < v->error)
         return v->least +
                (v->samples - v->least) * zt_expect_error(v->error) / zt_expect_error(error);
-    return v->samples + v->times * (further[error] - further[v->error]);
+    double more = v->times * (further[error] - further[v->error]);
+    return v->samples * pow(1 + more / v->samples, JOIN);
 }
 
 static double seconds_with(const view *v, int error) {
@@ -259,6 +262,18 @@ static view enlarged(const view *v, double many) {
     return large;
 }
 
+/* What was seen after `old`, with a smaller error, tells more of further samples: how many of
+ * those that were expected came, where light is random at least as many; and what each took,
+ * which is more than at first, as they are where most is met. */
+static void learn(view *v, const view *old) {
+    double few = FEW * old->least, samples = fmax(v->samples - old->samples, 0);
+    double expected = old->expected.further[v->error] - old->expected.further[old->error];
+    v->times = (samples + few) / (expected + few);
+    if (v->expected.is_random) v->times = fmax(v->times, 1);
+    if (samples > FEW * old->samples) /* or it would be all noise */
+        v->sample_s = fmax(v->sample_s, (v->all_s - old->all_s) / samples);
+}
+
 /* Looks with ever smaller errors, in so many seconds, as far as the frame has time for; and
  * learns from each. */
 static zt_status descend(view *v, pilot *p, int64_t frame, double left_s, double most_s) {
@@ -274,9 +289,7 @@ static zt_status descend(view *v, pilot *p, int64_t frame, double left_s, double
         ZT_TRY(see(v, p, frame, error));
         left_s -= p->fixed_s + v->all_s;
         if (v->error <= old.error) return ZT_OK;
-        double few = FEW * old.least, samples = fmax(v->samples - old.samples, 0);
-        double expected = old.expected.further[v->error] - old.expected.further[old.error];
-        v->times = (samples + few) / (expected + few);
+        learn(v, &old);
     }
 }
 
