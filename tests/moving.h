@@ -4,11 +4,10 @@
 #define ZT_TESTS_MOVING_H
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "meshes.h"
 #include "scenes.h"
-#include "tracer/kernel.h"
+#include "stage.h"
 
 /* A cube, and a smooth ball. */
 static zt_mesh models[2];
@@ -72,31 +71,8 @@ static inline vec3 mix3(vec3 a, vec3 b, double s) {
     return (vec3){mix(a.x, b.x, s), mix(a.y, b.y, s), mix(a.z, b.z, s)};
 }
 
-typedef struct stage {
-    zt_arena arena;
-    zt_meshes *meshes;
-    zt_ready ready;
-    void *work;
-} stage;
-
 static inline void open_stage(stage *st, const zt_exposure *exposure, zt_precision precision) {
-    const zt_scene *scene = exposure->moments;
-    *st = (stage){0};
-    assert_int_equal(
-        zt_meshes_open(&st->meshes, scene->meshes, scene->mesh_count, 1, (zt_listener){0}),
-        ZT_OK);
-    zt_pixel pixel = {.angle = .01};
-    assert_int_equal(
-        zt_tracer_prepare(&st->ready, exposure, precision, pixel, st->meshes, &st->arena),
-        ZT_OK);
-    st->work = aligned_alloc(64, (zt_kernel_work_size() + 63) / 64 * 64);
-    assert_non_null(st->work);
-}
-
-static inline void close_stage(stage *st) {
-    free(st->work);
-    zt_meshes_close(&st->meshes);
-    zt_arena_free(&st->arena);
+    stage_open(st, exposure, precision, (zt_pixel){.angle = .01});
 }
 
 static inline void open_still(stage *st, const zt_scene *scene) {

@@ -3,6 +3,7 @@
 #define ZT_TESTS_TRACING_H
 
 #include "rendering.h"
+#include "stage.h"
 
 /* cmocka's own takes floats. */
 #define assert_near(a, b, room) near_or_fail((double)(a), (double)(b), (double)(room), __LINE__)
@@ -12,32 +13,9 @@ static inline void near_or_fail(double a, double b, double room, int line) {
     fail();
 }
 
-/* An exposure made ready. */
-typedef struct stage {
-    zt_arena arena;
-    zt_meshes *meshes;
-    zt_ready ready;
-    void *work;
-} stage;
-
+/* In the precision that is tested. */
 static inline void open_stage(stage *st, const zt_exposure *exposure) {
-    *st = (stage){0};
-    const zt_scene *scene = exposure->moments;
-    assert_int_equal(
-        zt_meshes_open(&st->meshes, scene->meshes, scene->mesh_count, 1, (zt_listener){0}),
-        ZT_OK);
-    assert_int_equal(zt_tracer_prepare(&st->ready, exposure, precision,
-                                       zt_lens_pixel(&scene->camera, 100), st->meshes,
-                                       &st->arena),
-                     ZT_OK);
-    st->work = aligned_alloc(64, (zt_kernel_work_size() + 63) / 64 * 64);
-    assert_non_null(st->work);
-}
-
-static inline void close_stage(stage *st) {
-    free(st->work);
-    zt_meshes_close(&st->meshes);
-    zt_arena_free(&st->arena);
+    stage_open(st, exposure, precision, zt_lens_pixel(&exposure->moments->camera, 100));
 }
 
 static inline zt_light *scene_disk_light(test_scene *s, vec3 position, double radius) {
