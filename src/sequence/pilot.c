@@ -183,8 +183,10 @@ enum { LAST = ZT_EXPECT_COUNT - 1, LEAP = 3 * ZT_EXPECT_OCTAVE };
 #define FEW   0.25 /* of the least samples, what weighs as much as what was expected of more */
 #define SMALL 0.15 /* of the pilot's time, for ever smaller errors of a small picture */
 #define TWICE 1.6  /* a picture's least time by its pixels, for two looks at a larger one */
-#define JOIN  1.12 /* to this power of what was expected samples grow: the more there are, the
-                      more pixels go on that seemed good enough by luck; as measured */
+
+/* To this power of what was expected samples grow, as measured: the more there are, the more
+ * pixels go on that seemed good enough by luck. */
+#define JOIN 1.12
 
 /* What a picture takes, and what it would take with other errors. Samples are those of the
  * whole picture; seconds are of rendering, once all is made that lasts. */
