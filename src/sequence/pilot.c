@@ -198,7 +198,7 @@ typedef struct view {
     int known;     /* number of the smallest error that this or a smaller one was seen with; */
     int error;     /* of the one that this was seen with last, */
     double samples, all_s; /* and what it took */
-    double sample_s;       /* what each one takes, further ones, too */
+    double sample_s;       /* what each further one takes */
     double times;          /* as many as are expected come true */
     zt_expected expected;
 } view;
