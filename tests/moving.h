@@ -72,7 +72,7 @@ static inline vec3 mix3(vec3 a, vec3 b, double s) {
 }
 
 static inline void open_stage(stage *st, const zt_exposure *exposure, zt_precision precision) {
-    stage_open(st, exposure, precision, (zt_pixel){.angle = .01});
+    open_stage_of(st, exposure, precision, (zt_pixel){.angle = .01});
 }
 
 static inline void open_still(stage *st, const zt_scene *scene) {

@@ -14,8 +14,8 @@ typedef struct stage {
     void *work;
 } stage;
 
-static inline void stage_open(stage *st, const zt_exposure *exposure, zt_precision precision,
-                              zt_pixel pixel) {
+static inline void open_stage_of(stage *st, const zt_exposure *exposure, zt_precision precision,
+                                 zt_pixel pixel) {
     const zt_scene *scene = exposure->moments;
     *st = (stage){0};
     assert_int_equal(
@@ -28,7 +28,7 @@ static inline void stage_open(stage *st, const zt_exposure *exposure, zt_precisi
     assert_non_null(st->work);
 }
 
-static inline void stage_close(stage *st) {
+static inline void close_stage(stage *st) {
     free(st->work);
     zt_meshes_close(&st->meshes);
     zt_arena_free(&st->arena);

@@ -50,7 +50,7 @@ static void open_stage(stage *s) {
     a->tracks = s->tracks;
 }
 
-static void stage_close(stage *s) {
+static void close_stage(stage *s) {
     zt_arena_free(&s->frame);
     zt_animation_free(&s->animation);
 }
@@ -146,7 +146,7 @@ static void orbit_in_closed_form(void **state) {
         expected.z = 6 - expected.z;
         assert_vec(at(&s, t)->objects[SUN].sphere.center, expected, 2e-15);
     }
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* Whatever its axis, an orbit keeps its distance and its plane, turns counterclockwise seen
@@ -173,7 +173,7 @@ static void orbit_around_any_axis(void **state) {
             assert_true(begin.x >= 0 &&
                         fabs(vec3_dot(vec3_cross(axis, begin), (vec3){1, 0, 0})) < 4e-15);
     }
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* A light around a planet in a group that turns in a group that turns: both turn by 45 degrees
@@ -201,7 +201,7 @@ static void orbit_around_things_in_groups(void **state) {
         vec3 expected = {10 + 2 * cos(turn) + cos(own), 0, -2 * sin(turn) - sin(own)};
         assert_vec(at(&s, t)->lights[0].position, expected, 1e-14);
     }
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* From within a group, an orbit is around the place that a thing in the world has there: back
@@ -229,7 +229,7 @@ static void orbit_from_within_groups(void **state) {
     objects[PLANET].sphere.center = (vec3){0.1, 0.2, 0.3};
     track->orbit.around.thing = of(ZT_OWNER_SPHERE, "center", PLANET);
     assert_vec(at(&s, 3.3)->objects[SHIP].placement.position, (vec3){0.1, 0.2, 0.3}, 0);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* In a group without size nobody can be anywhere else, nor be seen: the value stays. */
@@ -252,7 +252,7 @@ static void groups_without_size(void **state) {
     const zt_placement *p = &at(&s, 1)->objects[SHIP].placement;
     assert_vec(p->position, (vec3){1, 2, 3}, 0);
     assert_true(p->rotation.w == 1);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* ---- paths ----------------------------------------------------------------------------------
@@ -282,7 +282,7 @@ static void follow_a_line(void **state) {
     zt_ease ease = {.kind = ZT_EASE_QUAD, .way = ZT_EASE_IN};
     track->follow.ease = &ease;
     assert_vec(at(&s, 2)->objects[SUN].sphere.center, (vec3){2.5, 5, -5}, 20 * 1e-12);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* Round bends and narrow ones, the speed is the path's length in its time to 1e-9: measured
@@ -307,7 +307,7 @@ static void follow_at_constant_speed(void **state) {
             if (!(fabs(measured - speed) <= 1e-9 * speed))
                 fail_msg("%.12g instead of %.12g at %g s", measured, speed, t);
         }
-        stage_close(&s);
+        close_stage(&s);
     }
 }
 
@@ -341,7 +341,7 @@ static void follow_and_lean(void **state) {
             assert_vec(vec3_scale(m.z, -1), ahead, 1e-3);
             assert_vec(m.y, up, 5e-3);
         }
-        stage_close(&s);
+        close_stage(&s);
     }
 }
 
@@ -375,7 +375,7 @@ static void offsets(void **state) {
     xform m = xform_place((vec3){0, 0, 0}, q, (vec3){1, 1, 1});
     assert_vec(xform_vector(&m, (vec3){1, 0, 0}), (vec3){0, 1, 0}, 1e-15);
     assert_vec(xform_vector(&m, (vec3){0, 1, 0}), (vec3){0, 0, 1}, 1e-15);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* A ship in a turning group sees the sun, which moves in the world, straight ahead at all
@@ -417,7 +417,7 @@ static void looks(void **state) {
                    vec3_normalize(vec3_sub(scene->camera.look_at, scene->camera.position)),
                    1e-15);
     }
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* A roll turns counterclockwise seen from behind, as a camera's does; a triangle is looked at
@@ -449,7 +449,7 @@ static void look_rolled(void **state) {
     assert_null(zt_place_property(ZT_OWNER_PLANE));
     assert_null(zt_place_property(ZT_OWNER_AMBIENT));
     assert_null(zt_place_property(ZT_OWNER_MATERIAL));
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* Values near the largest double stay finite, whatever is added to them. */
@@ -478,7 +478,7 @@ static void giants(void **state) {
         quat q = scene->objects[SHIP].placement.rotation;
         assert_true(fabs(quat_dot(q, q) - 1) < 1e-15);
     }
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* ---- order ----------------------------------------------------------------------------------
@@ -513,7 +513,7 @@ static void order_is_stable(void **state) {
     sort(&s);
     const int32_t expected[] = {0, 5, 3, 1, 2, 4};
     assert_memory_equal(s.animation->order, expected, sizeof expected);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 /* Every way of waiting for oneself is found: directly, through others, through the groups that
@@ -539,7 +539,7 @@ static void every_cycle_is_told(void **state) {
     assert_null(s.animation->order);
     const cycles expected = {3, {1, 3, 1}, {0, 1, 4}};
     assert_memory_equal(&c, &expected, sizeof c);
-    stage_close(&s);
+    close_stage(&s);
     open_stage(&s);
     drive(&s, ZT_OWNER_CAMERA, "rotation", 0, ZT_TRACK_LOOK_AT)->look_at =
         (zt_look_at){.target.thing = sun, .from = of(ZT_OWNER_CAMERA, "position", 0)};
@@ -549,7 +549,7 @@ static void every_cycle_is_told(void **state) {
     assert_int_equal(zt_animation_sort(s.animation, (zt_cycle_listener){note_cycle, &c}),
                      ZT_EDESCRIPTION);
     assert_true(c.count == 1 && c.firsts[0] == 0 && c.lengths[0] == 2);
-    stage_close(&s);
+    close_stage(&s);
 }
 
 int main(void) {

@@ -104,7 +104,7 @@ static void test_same_bits_moving(void **state) {
                 assert_int_equal(zt_labels_make(&labels, &st.ready, &st.arena), ZT_OK);
                 rays.labels = &labels;
                 st.ready.kernel->trace(&light[i], st.ready.tracer, &rays, st.work);
-                stage_close(&st);
+                close_stage(&st);
                 size_t size = (size_t)rays.count * sizeof(float);
                 assert_memory_equal(light[i].r, light[0].r, size);
                 assert_memory_equal(light[i].g, light[0].g, size);
@@ -159,7 +159,7 @@ static void test_nasty(void **state) {
             st.ready.kernel->trace(&light, st.ready.tracer, &rays, st.work);
             for (int i = 0; i < ZT_BATCH; i++)
                 assert_true(light.r[i] >= 0 && light.r[i] <= 1 && isfinite(light.r[i]));
-            stage_close(&st);
+            close_stage(&st);
         }
     }
 }
@@ -184,7 +184,7 @@ static void trace_paths(zt_radiance *light, const zt_scene *scene, const double 
     rays.count = count;
     rays.labels = &labels;
     st.ready.kernel->trace(light, st.ready.tracer, &rays, st.work);
-    stage_close(&st);
+    close_stage(&st);
 }
 
 /* A box before a wall of two colors, half of it a mirror: paths are the same within each thing,
@@ -289,7 +289,7 @@ static void test_probe(void **state) {
         lit += light.r[0] > 0;
     }
     assert_true(lit > 20 && lit < 180); /* in the penumbra */
-    stage_close(&st);
+    close_stage(&st);
 }
 
 int main(void) {

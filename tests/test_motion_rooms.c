@@ -193,9 +193,9 @@ static void compare_room(uint64_t seed, int count, int alone, zt_precision preci
                                .source = q.mirror_source};
             }
         }
-        stage_close(&still);
+        close_stage(&still);
     }
-    stage_close(&st);
+    close_stage(&st);
     /* In single precision a ray or two end on the other side of an edge. */
     bool single = precision == ZT_PRECISION_SINGLE;
     if (others + shadows > (single ? 3 : 0))
@@ -253,9 +253,9 @@ static void test_light(void **state) {
                 others += off > 1e-6F;
                 black += wanted.r[i] == 0;
             }
-            stage_close(&still);
+            close_stage(&still);
         }
-        stage_close(&st);
+        close_stage(&st);
     }
     assert_true(black < 36 * ZT_BATCH / 3);
     assert_int_equal(others, 0);
@@ -294,7 +294,7 @@ static void test_bits(void **state) {
                     st.ready.kernel->trace(&got, st.ready.tracer, &one, st.work);
                     assert_true(got.r[0] == wanted.r[k] && got.g[0] == wanted.g[k]);
                 }
-                stage_close(&st);
+                close_stage(&st);
             }
             unsetenv("ZOETROPE_ISA");
         }
@@ -313,11 +313,11 @@ static void test_still(void **state) {
     make_rays(&rays, &seed, -1);
     open_still(&st, f.scenes);
     st.ready.kernel->trace(&wanted, st.ready.tracer, &rays, st.work);
-    stage_close(&st);
+    close_stage(&st);
     open_stage(&st, &f.exposure, ZT_PRECISION_DOUBLE);
     assert_false(st.ready.moves);
     st.ready.kernel->trace(&got, st.ready.tracer, &rays, st.work);
-    stage_close(&st);
+    close_stage(&st);
     assert_same_light(&got, &wanted, ZT_BATCH);
 }
 

@@ -210,9 +210,9 @@ static void compare_shape(zt_shape shape, uint64_t seed, int count, zt_precision
             compare_solid(&st, &still, &place, origin, vec3_normalize(vec3_sub(aim, origin)),
                           time, precise);
         }
-        stage_close(&still);
+        close_stage(&still);
     }
-    stage_close(&st);
+    close_stage(&st);
 }
 
 static void test_solids(void **state) {

@@ -62,7 +62,7 @@ static void test_from_nothing(void **state) {
                 if (shape == ZT_SHAPE_SPHERE)
                     assert_true(met == (size > sqrt(.05)) || fabs(size - sqrt(.05)) < 1e-3);
             }
-            stage_close(&st);
+            close_stage(&st);
         }
 }
 
@@ -90,7 +90,7 @@ static void test_steps(void **state) {
     assert_true(probe(&st, (vec3){0, 0, 0}, last, 1).object >= 0);
     assert_true(probe(&st, (vec3){0, 0, 0}, (vec3){3, 1.5, -8}, (1 + f.times[1]) / 2).object >=
                 0);
-    stage_close(&st);
+    close_stage(&st);
 }
 
 /* A tube whose ends are keyed, and whose axis so turns from one moment to the next, is the tube
@@ -145,9 +145,9 @@ static void test_turning_axis(void **state) {
                 others += !same;
             }
             assert_true(met > 25 && others * 10 < met);
-            stage_close(&still);
+            close_stage(&still);
         }
-        stage_close(&st);
+        close_stage(&st);
     }
 }
 

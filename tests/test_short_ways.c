@@ -183,8 +183,8 @@ static void compare(zt_rays *rays, const zt_exposure *exposure, bool sized, bool
         }
         compare_ways(&all, rays, &own, sum);
     }
-    stage_close(&everything);
-    stage_close(&own);
+    close_stage(&everything);
+    close_stage(&own);
 }
 
 /* In both precisions, by the widest instructions and without any. */

@@ -54,7 +54,7 @@ static mean look(const zt_exposure *exposure, vec3 from, vec3 toward) {
             squares += (double)light.g[i] * (double)light.g[i];
         }
     }
-    stage_close(&st);
+    close_stage(&st);
     double value = sum / SAMPLES;
     return (mean){value, sqrt(fmax(squares / SAMPLES - value * value, 0) / SAMPLES)};
 }

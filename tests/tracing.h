@@ -15,7 +15,7 @@ static inline void near_or_fail(double a, double b, double room, int line) {
 
 /* In the precision that is tested. */
 static inline void open_stage(stage *st, const zt_exposure *exposure) {
-    stage_open(st, exposure, precision, zt_lens_pixel(&exposure->moments->camera, 100));
+    open_stage_of(st, exposure, precision, zt_lens_pixel(&exposure->moments->camera, 100));
 }
 
 static inline zt_light *scene_disk_light(test_scene *s, vec3 position, double radius) {
