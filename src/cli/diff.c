@@ -164,7 +164,7 @@ static zt_status tell(const side *older, const side *newer, const zt_options *op
     print_view(older->animation, newer->animation);
     status = tell_time(d, options, newer->animation, watcher, report);
     zt_diff_free(&d);
-    return status == ZT_OK ? zt_report_finish(report) : status;
+    return status;
 }
 
 zt_status zt_diff_films(const zt_options *options, bool (*stopped)(void *user),

@@ -125,10 +125,7 @@ zt_status zt_explain(const zt_animation *animation, const char *question, zt_rep
     zt_status status = zt_subject_find(&subject, animation, name, listener);
     if (status == ZT_OK) status = zt_subject_time(&time_s, animation, at + 1, listener);
     if (status == ZT_OK) status = zt_subject_explain(&explanation, &subject, time_s, listener);
-    if (status == ZT_OK) {
-        print(&subject, &explanation);
-        status = zt_report_finish(report);
-    }
+    if (status == ZT_OK) print(&subject, &explanation);
     free(name);
     return status;
 }
@@ -188,9 +185,6 @@ zt_status zt_explain_frames(const zt_animation *animation, int64_t first, int64_
         status = zt_renderer_needs(renderer, from, print_sentence, &indent);
     }
     if (status == ZT_OK) status = print_held(renderer, from, last);
-    if (status == ZT_OK) {
-        status = zt_report_finish(report);
-    }
     zt_renderer_close(&renderer);
     return status;
 }

@@ -78,11 +78,9 @@ zt_status zt_replay_pixel(zt_renderer *renderer, const zt_options *options,
                       options->column, options->row, format.width, format.height);
         return ZT_EARGUMENT;
     }
-    if (options->sample >= 0) {
-        zt_status status = zt_renderer_replay_sample(renderer, options->first, options->column,
-                                                     options->row, options->sample, &replay);
-        return status == ZT_OK ? zt_report_finish(report) : status;
-    }
+    if (options->sample >= 0)
+        return zt_renderer_replay_sample(renderer, options->first, options->column,
+                                         options->row, options->sample, &replay);
     zt_replayed result;
     zt_status status = zt_renderer_replay(&result, renderer, options->first, options->column,
                                           options->row, &replay, watcher);
@@ -91,5 +89,5 @@ zt_status zt_replay_pixel(zt_renderer *renderer, const zt_options *options,
     print_light("mean of the samples' light ", result.mean[0], result.mean[1], result.mean[2]);
     print_light("the pixel of the frame     ", (double)result.pixel[0], (double)result.pixel[1],
                 (double)result.pixel[2]);
-    return zt_report_finish(report);
+    return ZT_OK;
 }

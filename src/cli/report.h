@@ -32,7 +32,8 @@ __attribute__((format(printf, 3, 4))) void zt_report_line(zt_report *report, boo
 /* What `zoetrope check` prints: how large and long the film is, what is in it, what moves. */
 void zt_report_contents(const zt_animation *animation);
 
-/* Makes sure that what was printed on standard output arrived there. */
+/* Makes sure that what was printed on standard output arrived there: in the end of all that
+ * succeeds (main.c), and before what ends with another code. */
 zt_status zt_report_finish(zt_report *report);
 
 #endif
