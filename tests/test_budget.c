@@ -10,6 +10,7 @@
 #include "program.h"
 #include "scenes.h"
 #include "sequence/budget.h"
+#include "sequence/forecast.h"
 
 /* ---- machines that are made up --------------------------------------------------------------
  */
@@ -317,8 +318,62 @@ static void exact_films_are_known(void **state) {
     for (int f = 0; f < 4; f++) assert_int_equal(samples_of(manifest, f), 64);
 }
 
+/* A picture of which the first samples of all pixels take a second, and further ones, of a few
+ * of them, as errors ^ -1.5 and four times as long each. */
+enum { MIDDLES = 1000000 };
+static double samples_at(int error) {
+    return MIDDLES * (1 + pow(zt_expect_error(error), -1.5) / 500);
+}
+static double seconds_at(int error) { return 1 + 4 * (samples_at(error) / MIDDLES - 1); }
+
+/* As it is seen with an error, when so many times too many further samples are expected. */
+static zt_forecast seen_at(int error, double too_many, bool is_random) {
+    zt_forecast f = {.many = 1, .least = MIDDLES, .growth = 1, .error = error, .times = 1};
+    f.samples = samples_at(error);
+    f.all_s = seconds_at(error);
+    f.sample_s = f.all_s / f.samples;
+    f.expected.is_random = is_random;
+    for (int i = error; i < ZT_EXPECT_COUNT; i++)
+        f.expected.further[i] = too_many * (samples_at(i) - samples_at(error));
+    return f;
+}
+
+/* Two looks tell what many more samples take: what each of these takes, and that where light
+ * is random too few of them at first mean nothing. Rather more than less is thought of. */
+static void further_samples_are_foreseen(void **state) {
+    (void)state;
+    const int few = 3 * ZT_EXPECT_OCTAVE, some = 6 * ZT_EXPECT_OCTAVE;
+    for (int is_random = 0; is_random < 2; is_random++)
+        for (int more = some; more < 8 * ZT_EXPECT_OCTAVE; more++) {
+            const zt_forecast before = seen_at(few, is_random ? 2 : 1, is_random);
+            zt_forecast f = seen_at(some, 1, is_random);
+            zt_forecast_learn(&f, &before);
+            const double seconds = zt_forecast_seconds(&f, more);
+            assert_within(seconds, 1.15 * seconds_at(more), 0.18);
+            const int found = zt_forecast_error(&f, seconds);
+            assert_int_equal(found, more);
+        }
+}
+
+/* Of a larger picture the least samples are as many more; others as its edges are longer, or,
+ * of random light, as it has more pixels. */
+static void larger_pictures_are_foreseen(void **state) {
+    (void)state;
+    for (int is_random = 0; is_random < 2; is_random++) {
+        const zt_forecast f = seen_at(6 * ZT_EXPECT_OCTAVE, 1, is_random);
+        const zt_forecast large = zt_forecast_larger(&f, 4);
+        const double more = f.samples - f.least;
+        assert_within(large.least, 4 * f.least, 1e-12);
+        assert_within(large.samples, 4 * f.least + (is_random ? 4 : 2) * more, 1e-12);
+        assert_within(zt_forecast_seconds(&large, large.error), large.all_s, 1e-12);
+        if (is_random) assert_within(large.all_s, 4 * f.all_s, 1e-12);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(further_samples_are_foreseen),
+        cmocka_unit_test(larger_pictures_are_foreseen),
         cmocka_unit_test(films_are_done_in_time),
         cmocka_unit_test(frames_end_with_the_same_error),
         cmocka_unit_test(counts_are_smooth),

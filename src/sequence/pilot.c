@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "base/diag.h"
-#include "render/expect.h"
+#include "sequence/forecast.h"
 
 /* What of the budget it may take, and of adaptive sampling, of a single frame's; samples a
  * pixel in it; how many of them even where no two samples differ, so that frames that were not
@@ -21,6 +21,7 @@ typedef struct pilot {
     zt_watcher watcher;     /* stops, and says nothing */
     zt_image *sizes[SIZES]; /* each with twice the sides of the one before, to the frame's */
     zt_image *other;        /* another one of that size */
+    zt_image *image;        /* the one that errors are looked at in */
     double left_s;          /* that it may still take */
     double fixed_s, unit_s; /* of a frame: before its first sample, and for each, a pixel */
 } pilot;
@@ -177,68 +178,22 @@ static zt_status pilot_even(pilot *p) {
  * by then (render/expect.h).
  */
 
-enum { LAST = ZT_EXPECT_COUNT - 1, LEAP = 3 * ZT_EXPECT_OCTAVE };
+enum { LEAP = 3 * ZT_EXPECT_OCTAVE };
 
-#define SEEN  0.05 /* of samples or their time, what is too few to tell */
-#define FEW   0.25 /* of the least samples, what weighs as much as what was expected of more */
 #define SMALL 0.15 /* of the pilot's time, for ever smaller errors of a small picture */
 #define TWICE 1.6  /* a picture's least time by its pixels, for two looks at a larger one */
 
-/* To this power of what was expected samples grow, as measured: the more there are, the more
- * pixels go on that seemed good enough by luck. */
-#define JOIN 1.12
-
-/* What a picture takes, and what it would take with other errors. Samples are those of the
- * whole picture; seconds are of rendering, once all is made that lasts. */
-typedef struct view {
-    zt_image *image;
-    double many;   /* times more pixels than it the frame has */
-    double least;  /* samples with an error of 1 */
-    double growth; /* their time grows by pixels to this power */
-    int known;     /* number of the smallest error that this or a smaller one was seen with; */
-    int error;     /* of the one that this was seen with last, */
-    double samples, all_s; /* and what it took */
-    double sample_s;       /* what each further one takes */
-    double times;          /* as many as are expected come true */
-    zt_expected expected;
-} view;
-
-/* Where it was seen with a smaller error, further samples are thought to be as errors are. */
-static double samples_with(const view *v, int error) {
-    const double *further = v->expected.further;
-    if (error < v->error)
-        return v->least +
-               (v->samples - v->least) * zt_expect_error(v->error) / zt_expect_error(error);
-    double more = v->times * (further[error] - further[v->error]);
-    return v->samples * pow(1 + more / v->samples, JOIN);
-}
-
-static double seconds_with(const view *v, int error) {
-    return v->all_s + v->sample_s * (samples_with(v, error) - v->samples);
-}
-
-static double least_s_of(const view *v) {
-    return fmax(v->all_s - v->sample_s * (v->samples - v->least), SEEN * v->all_s);
-}
-
-/* The smallest error that takes no longer than so. */
-static int error_within(const view *v, double most_s) {
-    int error = 0;
-    while (error < LAST && seconds_with(v, error + 1) <= most_s) error++;
-    return error;
-}
-
 /* Looks at it with an error. */
-static zt_status see(view *v, pilot *p, int64_t frame, int error) {
+static zt_status see(zt_forecast *v, pilot *p, int64_t frame, int error) {
     zt_sampling sampling = p->plan->sampling;
     taken t;
     sampling.error = zt_expect_error(error);
     sampling.max = ZT_PLAN_SAMPLES_MAX;
     if (v->sample_s > 0)
         sampling.mean_max = (int)fmin(
-            ceil((v->least + fmax(p->left_s, 0) / v->sample_s) / pixels_of(v->image)) + 1,
+            ceil((v->least + fmax(p->left_s, 0) / v->sample_s) / pixels_of(p->image)) + 1,
             ZT_PLAN_SAMPLES_MAX);
-    ZT_TRY(take(&t, p, frame, v->image, sampling));
+    ZT_TRY(take(&t, p, frame, p->image, sampling));
     p->fixed_s = t.fixed_s;
     v->samples = (double)p->renderer->cost.rays.primary;
     v->all_s = t.render_s;
@@ -247,86 +202,65 @@ static zt_status see(view *v, pilot *p, int64_t frame, int error) {
     v->error = error;
     v->known = v->known > error ? v->known : error;
     /* It may have been stopped before it got there. */
-    while (v->error > 0 && v->expected.further[v->error] > SEEN * v->samples) v->error--;
+    while (v->error > 0 && v->expected.further[v->error] > ZT_FORECAST_SEEN * v->samples)
+        v->error--;
     return ZT_OK;
-}
-
-/* What a picture of so many times more pixels is expected to be. Edges, of which there is the
- * most to be had, grow as sides do; random light is everywhere. */
-static view enlarged(const view *v, double many) {
-    view large = *v;
-    double more = v->expected.is_random ? many : sqrt(many), least_s = least_s_of(v);
-    large.many = v->many / many;
-    large.least = many * v->least;
-    large.samples = large.least + more * (v->samples - v->least);
-    large.all_s = pow(many, v->growth) * least_s + more * (v->all_s - least_s);
-    for (int i = 0; i < ZT_EXPECT_COUNT; i++) large.expected.further[i] *= more;
-    return large;
-}
-
-/* What was seen after `old`, with a smaller error, tells more of further samples: how many of
- * those that were expected came, where light is random at least as many; and what each took,
- * which is more than at first, as they are where most is met. */
-static void learn(view *v, const view *old) {
-    double few = FEW * old->least, samples = fmax(v->samples - old->samples, 0);
-    double expected = old->expected.further[v->error] - old->expected.further[old->error];
-    v->times = (samples + few) / (expected + few);
-    if (v->expected.is_random) v->times = fmax(v->times, 1);
-    if (samples > FEW * old->samples) /* or it would be all noise */
-        v->sample_s = fmax(v->sample_s, (v->all_s - old->all_s) / samples);
 }
 
 /* Looks with ever smaller errors, in so many seconds, as far as the frame has time for; and
  * learns from each. */
-static zt_status descend(view *v, pilot *p, int64_t frame, double left_s, double most_s) {
+static zt_status descend(zt_forecast *v, pilot *p, int64_t frame, double left_s,
+                         double most_s) {
     for (;;) {
-        const view old = *v, whole = enlarged(v, v->many);
-        int error = error_within(v, 0.7 * (left_s - p->fixed_s)),
-            most = error_within(&whole, most_s);
+        const zt_forecast old = *v, whole = zt_forecast_larger(v, v->many);
+        int error = zt_forecast_error(v, 0.7 * (left_s - p->fixed_s)),
+            most = zt_forecast_error(&whole, most_s);
         if (error > most) error = most;
         bool far = error >= v->known + LEAP;
         if (far) error = v->known + LEAP;
-        double worth_s = v->all_s + 0.5 * (v->all_s - least_s_of(v));
-        if (error <= v->error || (!far && seconds_with(v, error) < worth_s)) return ZT_OK;
+        double worth_s = v->all_s + 0.5 * (v->all_s - zt_forecast_least_s(v));
+        if (error <= v->error || (!far && zt_forecast_seconds(v, error) < worth_s))
+            return ZT_OK;
         ZT_TRY(see(v, p, frame, error));
         left_s -= p->fixed_s + v->all_s;
         if (v->error <= old.error) return ZT_OK;
-        learn(v, &old);
+        zt_forecast_learn(v, &old);
     }
 }
 
 /* A picture of more pixels, first with about a third of the time. */
-static zt_status see_larger(view *v, pilot *p, int64_t frame, int size, double left_s,
+static zt_status see_larger(zt_forecast *v, pilot *p, int64_t frame, int size, double left_s,
                             double most_s) {
-    const double small_s = least_s_of(v),
-                 many = pixels_of(p->sizes[size]) / pixels_of(v->image);
-    *v = enlarged(v, many);
-    v->image = p->sizes[size];
-    const view whole = enlarged(v, v->many);
-    double first_s = fmax(left_s / 3, fmin(1.5 * least_s_of(v), 0.6 * left_s));
-    int error = error_within(v, first_s), most = error_within(&whole, most_s / 2);
+    const double small_s = zt_forecast_least_s(v),
+                 many = pixels_of(p->sizes[size]) / pixels_of(p->image);
+    *v = zt_forecast_larger(v, many);
+    p->image = p->sizes[size];
+    const zt_forecast whole = zt_forecast_larger(v, v->many);
+    double first_s = fmax(left_s / 3, fmin(1.5 * zt_forecast_least_s(v), 0.6 * left_s));
+    int error = zt_forecast_error(v, first_s), most = zt_forecast_error(&whole, most_s / 2);
     ZT_TRY(see(v, p, frame, error < most ? error : most));
     ZT_TRY(descend(v, p, frame, left_s - p->fixed_s - v->all_s, most_s));
-    v->growth = fmin(fmax(log(least_s_of(v) / small_s) / log(many), 0.5), 1);
+    v->growth = fmin(fmax(log(zt_forecast_least_s(v) / small_s) / log(many), 0.5), 1);
     return ZT_OK;
 }
 
 /* Of the frame in the middle, a small picture and then the largest that there is time for
  * twice; ends with what is expected of the whole one. */
-static zt_status see_sizes(view *v, pilot *p, int64_t frame, double keep_s, double most_s) {
+static zt_status see_sizes(zt_forecast *v, pilot *p, int64_t frame, double keep_s,
+                           double most_s) {
     for (int i = 0; i < 2; i++) ZT_TRY(see(v, p, frame, 0));
     v->least = v->samples;
     ZT_TRY(descend(v, p, frame, SMALL * (p->left_s - keep_s), most_s));
     double left_s = p->left_s - keep_s;
     int size = SIZES - 1;
-    while (size > 0 &&
-           TWICE * least_s_of(v) * pixels_of(p->sizes[size]) > left_s * pixels_of(v->image))
+    while (size > 0 && TWICE * zt_forecast_least_s(v) * pixels_of(p->sizes[size]) >
+                           left_s * pixels_of(p->image))
         size--;
     if (size > 0)
         ZT_TRY(see_larger(v, p, frame, size, left_s, most_s));
     else
         ZT_TRY(descend(v, p, frame, left_s, most_s));
-    *v = enlarged(v, v->many);
+    *v = zt_forecast_larger(v, v->many);
     return ZT_OK;
 }
 
@@ -341,7 +275,7 @@ static zt_status see_small(double *least_s, double *more_s, pilot *p, int64_t fr
         ZT_TRY(take(i ? &all : &least, p, frame, p->sizes[0], sampling));
     }
     *least_s = fmin(least.render_s, all.render_s);
-    *more_s = fmax(all.render_s - *least_s, SEEN * *least_s);
+    *more_s = fmax(all.render_s - *least_s, ZT_FORECAST_SEEN * *least_s);
     return ZT_OK;
 }
 
@@ -368,20 +302,25 @@ static zt_status pilot_adaptive(pilot *p, double frame_s) {
     bool few = most_frames(plan) < ZT_COSTS_MAX; /* have too little time to be compared */
     int64_t middle = spread_frame(plan, 0, 1);
     double pixels = pixels_of(p->sizes[SIZES - 1]);
-    view v = {.image = p->sizes[0], .growth = 1, .times = 1};
-    v.many = pixels / pixels_of(v.image);
+    zt_forecast v = {.growth = 1, .times = 1};
+    p->image = p->sizes[0];
+    v.many = pixels / pixels_of(p->image);
     ZT_TRY(see_sizes(&v, p, middle, few ? 0 : p->left_s / 4, frame_s - p->fixed_s));
-    const double least_s = least_s_of(&v);
-    int error = error_within(&v, frame_s - p->fixed_s);
-    while (error < LAST && seconds_with(&v, error) < (1 + SEEN) * least_s) error++;
-    double more_s = fmax(seconds_with(&v, error) - least_s, SEEN * least_s);
+    const double least_s = zt_forecast_least_s(&v);
+    int error = zt_forecast_error(&v, frame_s - p->fixed_s);
+    while (error < ZT_FORECAST_LAST &&
+           zt_forecast_seconds(&v, error) < (1 + ZT_FORECAST_SEEN) * least_s)
+        error++;
+    double more_s = fmax(zt_forecast_seconds(&v, error) - least_s, ZT_FORECAST_SEEN * least_s);
     /* By half an octave to both sides. */
     int to = error + ZT_EXPECT_OCTAVE / 2, from = to - ZT_EXPECT_OCTAVE;
-    double to_s = seconds_with(&v, to < LAST ? to : LAST) - least_s,
-           from_s = seconds_with(&v, from > 0 ? from : 0) - least_s;
+    double to_s =
+               zt_forecast_seconds(&v, to < ZT_FORECAST_LAST ? to : ZT_FORECAST_LAST) - least_s,
+           from_s = zt_forecast_seconds(&v, from > 0 ? from : 0) - least_s;
     plan->power = from_s > 0 ? fmin(fmax(log2(to_s / from_s), 0.5), 2) : 2;
     double work = pow(zt_expect_error(error), -plan->power);
-    if (v.error == LAST && v.samples < (1 + SEEN) * v.least) plan->enough = work;
+    if (v.error == ZT_FORECAST_LAST && v.samples < (1 + ZT_FORECAST_SEEN) * v.least)
+        plan->enough = work;
     plan->sample_s = pixels * v.sample_s;
     plan->cost_count = 1;
     plan->costs[0] = (zt_cost){middle, p->fixed_s + least_s, more_s / work, 1};
