@@ -14,7 +14,7 @@
 
 #include "files.h"
 
-enum { TEXT_MAX = 16 * 1024, ARGUMENTS_MAX = 16 };
+enum { TEXT_MAX = 16 * 1024, ARGUMENTS_MAX = 24 };
 
 /* What a run of the program came to. */
 typedef struct run {

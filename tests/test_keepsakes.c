@@ -41,7 +41,7 @@ static void write_film(const char *things, const char *material, int frames) {
 
 /* Renders what is missing, of which so many frames had been kept, and so many are kept then; at
  * least so many of a hundred of their tiles are copied. */
-static void render(const char *arguments, int found, int least, int kept) {
+static const run *render(const char *arguments, int found, int least, int kept) {
     run *r = zoetrope(arguments);
     if (r->code != 0) fail_msg("it ended with %d: %s", r->code, r->err);
     if (strstr(r->err, "cannot")) fail_msg("%s", r->err);
@@ -56,6 +56,7 @@ static void render(const char *arguments, int found, int least, int kept) {
         sscanf(line, "keepsakes %d in", &is);
     if (was != found || share < least || is != kept)
         fail_msg("%d found, %g %% copied, %d kept:\n%s", was, share, is, r->out);
+    return r;
 }
 
 /* How many files a directory has, and how many bytes they hold. */
@@ -100,8 +101,7 @@ static void edits_are_cheap(void **state) {
 }
 
 /* How many primary rays a run traced. */
-static int64_t traced(const char *arguments) {
-    run *r = zoetrope(arguments);
+static int64_t traced(const run *r) {
     const char *at = r->code == 0 ? strstr(r->out, "primary rays") : NULL;
     int64_t count = 0;
     assert_non_null(at);
@@ -123,9 +123,10 @@ static void edges_are_kept(void **state) {
     render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
     write_film(ball, "blue", 6);
     render(EDGES "--samples 64-256 --error 0.0003", 6, 70, 6);
-    int64_t new = traced(EDGES "--samples 64-256 --error 0.0002"),
-            all = traced("render film.yaml -o x.hash --set film.quality=edges --threads 1 "
-                         "--stats --samples 64-256 --error 0.0002");
+    int64_t new = traced(render(EDGES "--samples 64-256 --error 0.0002", 6, 100, 6)),
+            all = traced(
+                zoetrope("render film.yaml -o x.hash --set film.quality=edges --threads 1 "
+                         "--stats --samples 64-256 --error 0.0002"));
     assert_in_range(new, 1, all / 2);
     render(EDGES "--samples 128-256 --error 0.0002", 0, 0, 6);
 }
@@ -194,7 +195,8 @@ static void room_is_bounded(void **state) {
 static void noise_is_not_kept(void **state) {
     (void)state;
     write_film("", "red", 6);
-#define FOCUS "--samples 96 --stats --set camera.aperture=0.1 --set camera.focus_distance=6"
+#define FOCUS                                                                                  \
+    "--samples 96 --threads 1 --stats --set camera.aperture=0.1 --set camera.focus_distance=6"
     render("render film.yaml -o " TARGET " " FOCUS, 0, 0, 0);
     render("render film.yaml -o " TARGET " " FOCUS " --set film.seed=fixed", 0, 0, 6);
 }
